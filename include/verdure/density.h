@@ -1,0 +1,104 @@
+#ifndef VERDURE_DENSITY_H_
+#define VERDURE_DENSITY_H_
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "verdure/plant.h"
+
+/// Illumination of foliage from a density field: Luft, Balzer, Deussen, "Expressive Illumination of
+/// Foliage Based on Implicit Surfaces", Eurographics Workshop on Natural Phenomena 2007. Equation
+/// numbers are that paper's.
+namespace verdure {
+
+/// Which norm measures the distance to a generator in (2).
+struct Norm {
+  enum class Kind { kL1, kL2, kLp, kLinf };
+  Kind kind = Kind::kL2;
+  float p = 2.0f;  ///< exponent of kLp, >= 1
+};
+
+/// A triangle mesh of the surface F = 0.
+struct Surface {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;  ///< outward, -grad F normalised
+  std::vector<std::uint32_t> indices;
+};
+
+enum class CrownNormals {
+  kSurfaceVertex,  ///< the normal of the nearest vertex of the surface (the paper's)
+  kSurfacePoint,   ///< the normal at the nearest point of the surface, from the gradient there
+  kEllipsoid,      ///< the normal of the foliage's bounding ellipsoid (the paper's baseline)
+  kKeep            ///< leaf normals stay
+};
+
+/// Parameters of the bake; what is not set is found from the plant.
+struct DensityOptions {
+  std::optional<float> rho;  ///< radius of influence, m, > 0
+  std::optional<float> tau;  ///< threshold of the kernel sum, >= 0
+  float fraction = 1.0f;     ///< share of the leaves used as generators, (0, 1]
+  Norm norm;
+  int grid = 128;              ///< cells along the longest side of the field's bounds
+  std::optional<float> d_min;  ///< field value from which the ambient coefficient is k_min, > 0
+  float k_min = 0.2f;          ///< least ambient coefficient, [0, 1]
+  float exponent = 1.0f;       ///< n of (4), > 0
+  CrownNormals normals = CrownNormals::kSurfacePoint;
+  float blend = 1.0f;                                   ///< 0 = leaf normal, 1 = crown normal
+  std::uint32_t seed = 1;                               ///< of the random fraction
+  std::size_t max_memory_bytes = std::size_t{4} << 30;  ///< a grid that needs more is refused
+};
+
+/// Every number that a bake found or measured.
+struct DensityReport {
+  float rho = 0, tau = 0, d_min = 0, k_min = 0, exponent = 0;
+  std::size_t leaves = 0;             ///< foliage primitives
+  std::size_t generators = 0;         ///< those that were used
+  std::size_t skipped_leaves = 0;     ///< zero area
+  float field_max_at_generators = 0;  ///< largest kernel sum at a generator (before - tau)
+  float field_min_at_vertices = 0, field_max_at_vertices = 0;  ///< F, i.e. with - tau
+  glm::ivec3 grid_points{0};
+  float voxel_m = 0;
+  std::size_t grid_points_evaluated = 0;
+  std::size_t surface_vertices = 0, surface_triangles = 0, surface_components = 0;
+  bool watertight = false;  ///< every edge has exactly two triangles, opposite in direction
+  std::size_t degenerate_gradients = 0;  ///< surface vertices without a usable gradient
+  std::size_t vertices = 0, foliage_vertices = 0;
+  std::size_t vertices_open = 0, vertices_core = 0;  ///< k = 1, k = k_min
+  double mean_ambient = 0;
+  double seconds_generators = 0, seconds_surface = 0, seconds_ambient = 0, seconds_normals = 0,
+         seconds_total = 0;
+};
+
+struct DensityBake {
+  CrownLight light;
+  Surface surface;
+  DensityReport report;
+};
+
+/// Bakes one plant. `surface`, if given, replaces the extracted surface (its normals are used as
+/// they are, or computed from faces if absent). Throws Error: no foliage, tau above the largest
+/// kernel sum (says it), parameters out of range, a grid over max_memory_bytes.
+DensityBake bakeDensity(const Plant& plant, const DensityOptions& options = {},
+                        const Surface* surface = nullptr);
+
+/// A plant at a place: rotation about +Y (radians), then uniform scale, then translation (m).
+struct Placement {
+  std::uint32_t plant = 0;  ///< index into the population's plants
+  glm::vec3 position{0.0f};
+  float angle = 0.0f;
+  float scale = 1.0f;
+};
+
+/// Bakes a group of plants in one common field, so that neighbours darken each other: one result
+/// for each placement, in the plant's own frame (normals rotated back).
+std::vector<DensityBake> bakeDensityPopulation(std::span<const Plant* const> plants,
+                                               std::span<const Placement> placements,
+                                               const DensityOptions& options = {});
+
+}  // namespace verdure
+
+#endif  // VERDURE_DENSITY_H_

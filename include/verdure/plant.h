@@ -1,0 +1,138 @@
+#ifndef VERDURE_PLANT_H_
+#define VERDURE_PLANT_H_
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "verdure/image.h"
+
+namespace verdure {
+
+enum class AlphaMode { kOpaque, kMask, kBlend };
+
+/// How a surface looks, in the terms of glTF that verdure uses.
+struct Material {
+  std::string name;
+  glm::vec4 base_color{1.0f};   ///< linear RGB and alpha, multiplies the texture
+  int base_color_texture = -1;  ///< index into Plant::textures (sRGB), -1 = none
+  int normal_texture = -1;      ///< index into Plant::textures (linear, tangent space, +Y up)
+  float normal_scale = 1.0f;
+  AlphaMode alpha_mode = AlphaMode::kOpaque;
+  float alpha_cutoff = 0.5f;
+  bool double_sided = false;
+};
+
+struct Texture {
+  std::string name;
+  Image image;
+  bool clamp_u = false;  ///< else repeats
+  bool clamp_v = false;
+};
+
+enum class PartKind {
+  kWood,    ///< trunk, branches and whatever else is not foliage: keeps its normals
+  kFoliage  ///< leaves, needles, flowers: generators of the density field
+};
+
+/// One piece of one material. Positions are metres, +Y up, relative to Plant::origin;
+/// counter-clockwise triangles face the viewer. Vertex arrays have equal length or are empty.
+struct Mesh {
+  std::string name;
+  PartKind kind = PartKind::kWood;
+  std::uint32_t material = 0;
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;  ///< unit; always present after loading or growing
+  std::vector<glm::vec2> uvs;      ///< glTF convention: (0,0) = top left of the image; may be empty
+  std::vector<std::uint32_t> indices;  ///< three per triangle
+  /// Wood only: the branch (index into Plant::branches) of each vertex; empty if unknown.
+  std::vector<std::uint32_t> branch_of_vertex;
+
+  std::size_t triangleCount() const { return indices.size() / 3; }
+};
+
+inline constexpr std::uint32_t kNone = 0xffffffffu;
+
+/// One leaf (or one card of several leaves): a connected component of a foliage mesh after welding
+/// by position.
+struct Leaf {
+  std::uint32_t mesh = 0;            ///< index into Plant::meshes
+  std::uint32_t first_triangle = 0;  ///< range in Plant::leaf_triangles
+  std::uint32_t triangle_count = 0;
+  std::uint32_t branch = kNone;  ///< the branch that carries it, kNone if unknown
+  glm::vec3 centroid{0.0f};      ///< area-weighted
+  float area = 0.0f;             ///< one side, m^2
+  glm::vec3 stalk{0.0f};         ///< where it is attached
+};
+
+struct BranchPoint {
+  glm::vec3 position{0.0f};
+  float radius = 0.0f;
+};
+
+/// One stem: a polyline with radii. The trunk has level 0 and no parent.
+struct Branch {
+  std::uint32_t parent = kNone;  ///< index into Plant::branches, always below its own index
+  int level = 0;
+  float parent_offset = 0.0f;       ///< where it leaves the parent: 0 = parent's base, 1 = its tip
+  std::vector<BranchPoint> points;  ///< base to tip, at least 2
+};
+
+/// The document that a plant was loaded from, kept so that export changes nothing that a bake does
+/// not change. Defined in the plant room.
+struct SourceDocument;
+
+/// A plant as plain data.
+struct Plant {
+  std::string name;
+  glm::dvec3 origin{0.0};  ///< added to every position; not 0 for plants far from the origin
+  std::vector<Mesh> meshes;
+  std::vector<Material> materials;
+  std::vector<Texture> textures;
+  std::vector<Leaf> leaves;
+  std::vector<std::uint32_t> leaf_triangles;  ///< triangle numbers within the leaf's mesh
+  std::vector<Branch> branches;               ///< empty where the hierarchy is unknown
+  std::vector<std::string> notes;             ///< one line each: what loading found out or mended
+  std::shared_ptr<const SourceDocument> source;  ///< null for grown plants
+};
+
+struct Bounds {
+  glm::vec3 min{0.0f};
+  glm::vec3 max{0.0f};
+  glm::vec3 center() const { return 0.5f * (min + max); }
+  glm::vec3 size() const { return max - min; }
+};
+
+/// Bounds of all vertices, or of those of one kind. All zero when there are none.
+Bounds bounds(const Plant& plant);
+Bounds bounds(const Plant& plant, PartKind kind);
+
+std::size_t vertexCount(const Plant& plant);
+std::size_t triangleCount(const Plant& plant);
+
+/// Bytes held by the plant's arrays and images (not its source document).
+std::size_t memoryBytes(const Plant& plant);
+
+/// Finds the leaves of every foliage mesh: connected components after welding by position (vertices
+/// closer than 1e-6 of the mesh's size are one). Fills Plant::leaves and leaf_triangles, ordered by
+/// mesh and first triangle. The stalk point is the vertex nearest to the wood, or, without wood,
+/// the one farthest from the leaf's centroid towards the plant's axis. Deterministic for any number
+/// of threads.
+void findLeaves(Plant& plant);
+
+/// The light of a crown, per vertex of each mesh of the plant it was baked from.
+struct MeshLight {
+  std::vector<glm::vec3> normals;  ///< unit
+  std::vector<float> ambient;      ///< coefficient in [1/255, 1], 1 = open
+};
+
+/// The result of a bake: `meshes` runs parallel to Plant::meshes.
+struct CrownLight {
+  std::vector<MeshLight> meshes;
+};
+
+}  // namespace verdure
+
+#endif  // VERDURE_PLANT_H_

@@ -1,0 +1,119 @@
+#ifndef VERDURE_RENDER_H_
+#define VERDURE_RENDER_H_
+
+#include <glm/glm.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "verdure/plant.h"
+
+/// Headless pictures of plants on Vulkan 1.3.
+namespace verdure {
+
+enum class NormalSource {
+  kLeaf,   ///< the mesh's own normals, flipped for back-facing leaves
+  kCrown,  ///< the baked normals; never flipped: they mean "towards the light outside the crown"
+};
+
+enum class AmbientSource {
+  kConstant,  ///< k_a = 1
+  kBaked,     ///< the baked coefficient
+};
+
+/// The terms of illumination model (1) of Luft et al. 2007, each with its switch.
+struct Terms {
+  NormalSource normal = NormalSource::kCrown;
+  AmbientSource ambient_source = AmbientSource::kBaked;
+  bool ambient = true;
+  bool diffuse = true;   ///< k_d (N.L)
+  bool specular = true;  ///< k_s (V.R)^n
+  bool shadow = true;    ///< S_i from the shadow map
+  bool textures = true;  ///< else a uniform matt colour of the material
+};
+
+/// Published combinations: "standard" (leaf normals, constant ambient) and "expressive" (Luft).
+/// Throws Error for an unknown name.
+Terms presetTerms(const std::string& name);
+const std::vector<std::string>& presetNames();
+
+struct Camera {
+  glm::vec3 eye{0.0f, 2.0f, 10.0f};
+  glm::vec3 target{0.0f, 2.0f, 0.0f};
+  float vertical_fov = 0.6f;  ///< radians
+};
+
+/// A plant drawn at one or more places. `light` may be null: then normals are the mesh's own and
+/// the ambient coefficient is 1.
+struct SceneItem {
+  const Plant* plant = nullptr;
+  const CrownLight* light = nullptr;
+  std::vector<glm::mat4> world_from_plant{glm::mat4(1.0f)};
+};
+
+struct Scene {
+  std::vector<SceneItem> items;
+  bool ground = true;  ///< textured ground plane at y = 0 (or at the lowest plant)
+  float ground_height = 0.0f;
+};
+
+struct View {
+  int width = 960;
+  int height = 720;
+  Camera camera;
+  float sun_azimuth = 2.2f;     ///< radians from +Z (south) towards +X (east)
+  float sun_elevation = 0.75f;  ///< radians above the horizon
+  Terms terms;
+  glm::vec3 sun_color{1.0f, 0.95f, 0.86f};
+  glm::vec3 ambient_color{0.45f, 0.52f, 0.60f};
+  int shadow_map_size = 2048;
+  std::optional<glm::vec3> background;  ///< linear RGB instead of the gradient sky
+};
+
+/// A camera that shows the whole scene from `azimuth` (as the sun's) and `elevation` (radians),
+/// with a small margin, for an image of `aspect` = width / height.
+Camera automaticCamera(const Scene& scene, float azimuth, float elevation, float aspect,
+                       float vertical_fov = 0.6f);
+
+struct FrameTimes {
+  double pack_ms = 0;    ///< packing and upload, CPU
+  double shadow_ms = 0;  ///< GPU
+  double color_ms = 0;   ///< GPU
+};
+
+struct Frame {
+  Image image;  ///< sRGB, opaque
+  FrameTimes times;
+};
+
+struct DeviceOptions {
+  std::string device;       ///< part of the device's name; empty = the first discrete GPU, else any
+  bool validation = false;  ///< validation layer with synchronisation checks
+};
+
+/// A Vulkan device and what draws on it. A scene stays packed on the GPU until another is given.
+class Renderer {
+ public:
+  /// Throws Error when there is no Vulkan 1.3 device (says what to install).
+  explicit Renderer(const DeviceOptions& options = {});
+  ~Renderer();
+  Renderer(Renderer&&) noexcept;
+  Renderer& operator=(Renderer&&) noexcept;
+
+  const std::string& deviceName() const;
+  /// Packs and uploads; the scene's plants may go afterwards.
+  void setScene(const Scene& scene);
+  /// Draws the scene that was set. Throws Error for a size of zero or beyond the device's limit.
+  Frame render(const View& view);
+  /// Messages of the validation layer so far (0 when it is off).
+  int validationMessages() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace verdure
+
+#endif  // VERDURE_RENDER_H_

@@ -1,0 +1,1 @@
+#include "verdure/density.h"

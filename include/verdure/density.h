@@ -8,26 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "verdure/field.h"
 #include "verdure/plant.h"
 
 /// Illumination of foliage from a density field: Luft, Balzer, Deussen, "Expressive Illumination of
 /// Foliage Based on Implicit Surfaces", Eurographics Workshop on Natural Phenomena 2007. Equation
 /// numbers are that paper's.
 namespace verdure {
-
-/// Which norm measures the distance to a generator in (2).
-struct Norm {
-  enum class Kind { kL1, kL2, kLp, kLinf };
-  Kind kind = Kind::kL2;
-  float p = 2.0f;  ///< exponent of kLp, >= 1
-};
-
-/// A triangle mesh of the surface F = 0.
-struct Surface {
-  std::vector<glm::vec3> positions;
-  std::vector<glm::vec3> normals;  ///< outward, -grad F normalised
-  std::vector<std::uint32_t> indices;
-};
 
 enum class CrownNormals {
   kSurfaceVertex,  ///< the normal of the nearest vertex of the surface (the paper's)

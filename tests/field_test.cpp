@@ -242,11 +242,11 @@ TEST(Surface, SphereHasItsAreaVolumeAndNormals) {
 
 TEST(Surface, PrunedLatticeGivesTheFullLatticesSurface) {
   // A large radius uses the coarse lattice; the oracle classifies every cell of the full one.
-  for (const float radius : {0.35f, 0.9f, 1.4f})
+  for (const float radius : {0.35f, 0.9f, 1.5f})
     for (const float share : {0.02f, 0.3f, 0.9f}) {
       const auto generators = randomEllipsoid(800, radius, 11);
       const DensityField field(generators);
-      const Lattice lattice = field.lattice(60);
+      const Lattice lattice = field.lattice(90);
       const std::vector<float> sums = field.sumOn(lattice);
       const float tau = share * *std::max_element(sums.begin(), sums.end());
       SurfaceStatistics statistics;

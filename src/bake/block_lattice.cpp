@@ -54,7 +54,7 @@ void BlockLattice::evaluate(const DensityField::State& field) {
   values_.resize(active_.size() * kBlockPoints);
   const glm::vec3 span = glm::vec3(kBlock - 1) * lattice_.spacing;
   parallelChunks(active_.size(), 16, [&](std::size_t begin, std::size_t end) {
-    std::vector<PackedGenerator> generators;
+    GeneratorList generators;
     for (std::size_t slot = begin; slot < end; ++slot) {
       const glm::vec3 low = blockLow(field.grid, active_[slot]);
       field.grid.gather(low, low + span, generators);

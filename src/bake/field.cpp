@@ -43,8 +43,7 @@ class BatchedPoints {
       load(points, begin, first, last);
       grid_.gather(low_, high_, generators_);
       evaluate(
-          std::span<const PackedGenerator>(generators_),
-          PointArrays{x_.data(), y_.data(), z_.data(), x_.size()},
+          generators_, PointArrays{x_.data(), y_.data(), z_.data(), x_.size()},
           [&](std::size_t k) { return begin + order_[first + k].second; }, last - first);
       first = last;
     }
@@ -73,7 +72,7 @@ class BatchedPoints {
   float bin_;
   glm::vec3 low_{0.0f}, high_{0.0f};
   std::vector<std::pair<std::uint64_t, std::uint32_t>> order_;
-  std::vector<PackedGenerator> generators_;
+  GeneratorList generators_;
   std::vector<float> x_, y_, z_;
 };
 
@@ -103,8 +102,8 @@ void DensityField::sumAt(std::span<const glm::vec3> points, std::span<float> sum
     BatchedPoints batch(state_->grid);
     std::vector<float> lanes;
     batch.run(points, begin, end,
-              [&](std::span<const PackedGenerator> generators, const PointArrays& arrays,
-                  const auto& index, std::size_t count) {
+              [&](const GeneratorList& generators, const PointArrays& arrays, const auto& index,
+                  std::size_t count) {
                 lanes.resize(arrays.count);
                 sumAtPoints(state_->norm, generators, arrays, lanes.data());
                 for (std::size_t k = 0; k < count; ++k) sums[index(k)] = state_->weight * lanes[k];
@@ -118,8 +117,8 @@ void DensityField::gradientAt(std::span<const glm::vec3> points, std::span<float
     BatchedPoints batch(state_->grid);
     std::vector<float> lanes;
     batch.run(points, begin, end,
-              [&](std::span<const PackedGenerator> generators, const PointArrays& arrays,
-                  const auto& index, std::size_t count) {
+              [&](const GeneratorList& generators, const PointArrays& arrays, const auto& index,
+                  std::size_t count) {
                 const std::size_t n = arrays.count;
                 lanes.resize(4 * n);
                 float* const l = lanes.data();

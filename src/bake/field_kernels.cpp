@@ -13,39 +13,42 @@ namespace verdure {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Never more lanes than a block's row or the padding of point arrays.
-using Tag = hn::CappedTag<float, 8>;
+// Never more lanes than the padding of point arrays, or than half a layer of a block.
+using Tag = hn::CappedTag<float, kPointLanes>;
 using V = hn::Vec<Tag>;
+constexpr std::size_t kLanes = hn::MaxLanes(Tag());
 
-// Distances relative to the radius for one norm: s2 = (|d| / r)^2 of offsets scaled by 1 / r, and
-// the vector s grad s (with respect to the scaled offset), which (2)'s derivative needs.
+// One norm: s2 = (|o| / r)^2 of an offset o, and s grad s = s2's gradient / 2, which (2)'s
+// derivative needs, times r^2.
 struct NormL1 {
-  V s2(Tag, V x, V y, V z) const {
-    const V s = hn::Add(hn::Abs(x), hn::Add(hn::Abs(y), hn::Abs(z)));
+  V s2(Tag, V x, V y, V z, V inverse) const {
+    const V s = hn::Mul(hn::Add(hn::Abs(x), hn::Add(hn::Abs(y), hn::Abs(z))), inverse);
     return hn::Mul(s, s);
   }
-  void sGradS(Tag d, V x, V y, V z, V& gx, V& gy, V& gz) const {
-    const V s = hn::Add(hn::Abs(x), hn::Add(hn::Abs(y), hn::Abs(z)));
-    gx = hn::CopySign(s, x);
-    gy = hn::CopySign(s, y);
-    gz = hn::CopySign(s, z);
-    (void)d;
+  void slope(Tag, V x, V y, V z, V& gx, V& gy, V& gz) const {
+    const V length = hn::Add(hn::Abs(x), hn::Add(hn::Abs(y), hn::Abs(z)));
+    gx = hn::CopySign(length, x);
+    gy = hn::CopySign(length, y);
+    gz = hn::CopySign(length, z);
   }
 };
 struct NormL2 {
-  V s2(Tag, V x, V y, V z) const { return hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z))); }
-  void sGradS(Tag, V x, V y, V z, V& gx, V& gy, V& gz) const {
+  V s2(Tag, V x, V y, V z, V inverse) const {
+    const V d2 = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
+    return hn::Mul(d2, hn::Mul(inverse, inverse));
+  }
+  void slope(Tag, V x, V y, V z, V& gx, V& gy, V& gz) const {
     gx = x;
     gy = y;
     gz = z;
   }
 };
 struct NormLinf {
-  V s2(Tag, V x, V y, V z) const {
-    const V s = hn::Max(hn::Abs(x), hn::Max(hn::Abs(y), hn::Abs(z)));
+  V s2(Tag, V x, V y, V z, V inverse) const {
+    const V s = hn::Mul(hn::Max(hn::Abs(x), hn::Max(hn::Abs(y), hn::Abs(z))), inverse);
     return hn::Mul(s, s);
   }
-  void sGradS(Tag d, V x, V y, V z, V& gx, V& gy, V& gz) const {
+  void slope(Tag d, V x, V y, V z, V& gx, V& gy, V& gz) const {
     const V ax = hn::Abs(x), ay = hn::Abs(y), az = hn::Abs(z), zero = hn::Zero(d);
     const auto first = hn::And(hn::Ge(ax, ay), hn::Ge(ax, az));
     const auto second = hn::AndNot(first, hn::Ge(ay, az));
@@ -57,21 +60,25 @@ struct NormLinf {
 struct NormLp {
   float p;
   V power(Tag d, V v, float exponent) const {
-    // 0^p = 0: the smallest normal number instead of 0 keeps the logarithm finite.
+    // 0^p = 0: a tiny number instead of 0 keeps the logarithm finite.
     const V x = hn::Max(v, hn::Set(d, 1e-30f));
     return hn::Exp(d, hn::Mul(hn::Log(d, x), hn::Set(d, exponent)));
   }
-  V s2(Tag d, V x, V y, V z) const {
+  V length(Tag d, V x, V y, V z) const {
     const V sum =
         hn::Add(power(d, hn::Abs(x), p), hn::Add(power(d, hn::Abs(y), p), power(d, hn::Abs(z), p)));
-    return power(d, sum, 2.0f / p);
+    return power(d, sum, 1.0f / p);
   }
-  void sGradS(Tag d, V x, V y, V z, V& gx, V& gy, V& gz) const {
-    // grad |d|_p = sign(d_i) (|d_i| / |d|_p)^(p - 1).
-    const V s = hn::Sqrt(s2(d, x, y, z));
-    const V inverse = hn::Div(hn::Set(d, 1.0f), hn::Max(s, hn::Set(d, 1e-20f)));
+  V s2(Tag d, V x, V y, V z, V inverse) const {
+    const V s = length(d, hn::Mul(x, inverse), hn::Mul(y, inverse), hn::Mul(z, inverse));
+    return hn::Mul(s, s);
+  }
+  void slope(Tag d, V x, V y, V z, V& gx, V& gy, V& gz) const {
+    // grad |o|_p = sign(o_i) (|o_i| / |o|_p)^(p - 1).
+    const V l = length(d, x, y, z);
+    const V inverse = hn::Div(hn::Set(d, 1.0f), hn::Max(l, hn::Set(d, 1e-20f)));
     const auto component = [&](V v) {
-      return hn::CopySign(hn::Mul(s, power(d, hn::Mul(hn::Abs(v), inverse), p - 1.0f)), v);
+      return hn::CopySign(hn::Mul(l, power(d, hn::Mul(hn::Abs(v), inverse), p - 1.0f)), v);
     };
     gx = component(x);
     gy = component(y);
@@ -93,56 +100,78 @@ void withNorm(const Norm& norm, const Function& function) {
   }
 }
 
-// Points times generators, any norm.
-template <class N>
-void sumLanes(const N& norm, const PackedGenerator* generators, std::size_t count, V x, V y, V z,
-              float* out) {
-  const Tag d;
-  const V one = hn::Set(d, 1.0f), zero = hn::Zero(d);
-  V sum = zero;
-  for (std::size_t i = 0; i < count; ++i) {
-    const PackedGenerator& g = generators[i];
-    const V inverse = hn::Set(d, g.inverse_radius);
-    const V w = hn::Max(hn::Sub(one, norm.s2(d, hn::Mul(hn::Sub(x, hn::Set(d, g.x)), inverse),
-                                             hn::Mul(hn::Sub(y, hn::Set(d, g.y)), inverse),
-                                             hn::Mul(hn::Sub(z, hn::Set(d, g.z)), inverse))),
-                        zero);
-    sum = hn::MulAdd(w, w, sum);
+void AppendInReach(const GeneratorList& list, std::size_t begin, std::size_t end,
+                   const glm::vec3& low, const glm::vec3& high, bool euclidean,
+                   GeneratorList& found) {
+  const hn::ScalableTag<float> d;
+  using W = hn::Vec<decltype(d)>;
+  found.reserve(found.count + (end - begin));
+  const W zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  std::size_t n = found.count;
+  for (std::size_t i = begin; i < end; i += hn::Lanes(d)) {
+    const W x = hn::LoadU(d, list.x.data() + i), y = hn::LoadU(d, list.y.data() + i),
+            z = hn::LoadU(d, list.z.data() + i),
+            inverse = hn::LoadU(d, list.inverse_radius.data() + i);
+    const auto outside = [&](W v, float from, float to) {
+      return hn::Max(hn::Max(hn::Sub(hn::Set(d, from), v), hn::Sub(v, hn::Set(d, to))), zero);
+    };
+    const W dx = outside(x, low.x, high.x), dy = outside(y, low.y, high.y),
+            dz = outside(z, low.z, high.z);
+    // Every Lp ball lies in the cube of the same radius.
+    const W distance2 = euclidean
+                            ? hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)))
+                            : hn::Max(hn::Mul(dx, dx), hn::Max(hn::Mul(dy, dy), hn::Mul(dz, dz)));
+    const auto reach =
+        hn::And(hn::Lt(hn::Mul(distance2, hn::Mul(inverse, inverse)), one), hn::FirstN(d, end - i));
+    hn::CompressStore(x, reach, d, found.x.data() + n);
+    hn::CompressStore(y, reach, d, found.y.data() + n);
+    hn::CompressStore(z, reach, d, found.z.data() + n);
+    n += hn::CompressStore(inverse, reach, d, found.inverse_radius.data() + n);
   }
-  hn::StoreU(sum, d, out);
+  found.count = n;
 }
 
-void SumAtPoints(const Norm& norm, const PackedGenerator* generators, std::size_t count,
-                 const PointArrays& points, float* sums) {
+void SumAtPoints(const Norm& norm, const GeneratorList& generators, const PointArrays& points,
+                 float* sums) {
   const Tag d;
+  const V one = hn::Set(d, 1.0f), zero = hn::Zero(d);
   withNorm(norm, [&](const auto& n) {
-    for (std::size_t i = 0; i < points.count; i += hn::Lanes(d))
-      sumLanes(n, generators, count, hn::LoadU(d, points.x + i), hn::LoadU(d, points.y + i),
-               hn::LoadU(d, points.z + i), sums + i);
+    for (std::size_t i = 0; i < points.count; i += kLanes) {
+      const V x = hn::LoadU(d, points.x + i), y = hn::LoadU(d, points.y + i),
+              z = hn::LoadU(d, points.z + i);
+      V sum = zero;
+      for (std::size_t k = 0; k < generators.count; ++k) {
+        const V s2 = n.s2(
+            d, hn::Sub(x, hn::Set(d, generators.x[k])), hn::Sub(y, hn::Set(d, generators.y[k])),
+            hn::Sub(z, hn::Set(d, generators.z[k])), hn::Set(d, generators.inverse_radius[k]));
+        const V w = hn::Max(hn::Sub(one, s2), zero);
+        sum = hn::MulAdd(w, w, sum);
+      }
+      hn::StoreU(sum, d, sums + i);
+    }
   });
 }
 
-void GradientAtPoints(const Norm& norm, const PackedGenerator* generators, std::size_t count,
-                      const PointArrays& points, float* sums, float* gx, float* gy, float* gz) {
+void GradientAtPoints(const Norm& norm, const GeneratorList& generators, const PointArrays& points,
+                      float* sums, float* gx, float* gy, float* gz) {
   const Tag d;
+  const V one = hn::Set(d, 1.0f), zero = hn::Zero(d);
   withNorm(norm, [&](const auto& n) {
-    const V one = hn::Set(d, 1.0f), zero = hn::Zero(d);
-    for (std::size_t i = 0; i < points.count; i += hn::Lanes(d)) {
+    for (std::size_t i = 0; i < points.count; i += kLanes) {
       const V x = hn::LoadU(d, points.x + i), y = hn::LoadU(d, points.y + i),
               z = hn::LoadU(d, points.z + i);
       V sum = zero, sx = zero, sy = zero, sz = zero;
-      for (std::size_t k = 0; k < count; ++k) {
-        const PackedGenerator& g = generators[k];
-        const V inverse = hn::Set(d, g.inverse_radius);
-        const V ox = hn::Mul(hn::Sub(x, hn::Set(d, g.x)), inverse),
-                oy = hn::Mul(hn::Sub(y, hn::Set(d, g.y)), inverse),
-                oz = hn::Mul(hn::Sub(z, hn::Set(d, g.z)), inverse);
-        const V w = hn::Max(hn::Sub(one, n.s2(d, ox, oy, oz)), zero);
+      for (std::size_t k = 0; k < generators.count; ++k) {
+        const V inverse = hn::Set(d, generators.inverse_radius[k]);
+        const V ox = hn::Sub(x, hn::Set(d, generators.x[k])),
+                oy = hn::Sub(y, hn::Set(d, generators.y[k])),
+                oz = hn::Sub(z, hn::Set(d, generators.z[k]));
+        const V w = hn::Max(hn::Sub(one, n.s2(d, ox, oy, oz, inverse)), zero);
         sum = hn::MulAdd(w, w, sum);
-        // d/dq (1 - s^2)^2 = -4 (1 - s^2) s grad s / r.
-        const V scale = hn::Mul(w, inverse);
+        // d/dq (1 - s^2)^2 = -4 (1 - s^2) s grad s.
+        const V scale = hn::Mul(w, hn::Mul(inverse, inverse));
         V vx, vy, vz;
-        n.sGradS(d, ox, oy, oz, vx, vy, vz);
+        n.slope(d, ox, oy, oz, vx, vy, vz);
         sx = hn::MulAdd(scale, vx, sx);
         sy = hn::MulAdd(scale, vy, sy);
         sz = hn::MulAdd(scale, vz, sz);
@@ -156,109 +185,106 @@ void GradientAtPoints(const Norm& norm, const PackedGenerator* generators, std::
   });
 }
 
-// The Euclidean norm splits along the axes: a row of points shares 1 - (dy^2 + dz^2) / r^2, and
-// rows that the sphere misses cost one comparison.
-void SumOnBlockEuclidean(const PackedGenerator* generators, std::size_t count, const glm::vec3& low,
-                         float spacing, float* sums) {
-  const Tag d;
-  constexpr std::size_t kRow = kBlockX;
-  HWY_ALIGN float acc[kBlockPoints] = {};
-  HWY_ALIGN float px[kRow], dx2[kRow];
-  for (int i = 0; i < kBlockX; ++i) px[i] = low.x + spacing * static_cast<float>(i);
-  const V zero = hn::Zero(d);
-  for (std::size_t k = 0; k < count; ++k) {
-    const PackedGenerator& g = generators[k];
-    const float inverse2 = g.inverse_radius * g.inverse_radius;
-    const V gx = hn::Set(d, g.x), scale = hn::Set(d, inverse2);
-    for (std::size_t i = 0; i < kRow; i += hn::Lanes(d)) {
-      const V o = hn::Sub(hn::Load(d, px + i), gx);
-      hn::Store(hn::Mul(hn::Mul(o, o), scale), d, dx2 + i);
-    }
-    float dy2[kBlockY];
-    for (int y = 0; y < kBlockY; ++y) {
-      const float o = low.y + spacing * static_cast<float>(y) - g.y;
-      dy2[y] = o * o * inverse2;
-    }
-    float* row = acc;
-    for (int z = 0; z < kBlockZ; ++z) {
-      const float o = low.z + spacing * static_cast<float>(z) - g.z;
-      const float rest_z = 1.0f - o * o * inverse2;
-      if (rest_z <= 0.0f) {
-        row += kBlockX * kBlockY;
-        continue;
-      }
-      for (int y = 0; y < kBlockY; ++y, row += kBlockX) {
-        const V rest = hn::Set(d, rest_z - dy2[y]);
-        for (std::size_t i = 0; i < kRow; i += hn::Lanes(d)) {
-          const V w = hn::Max(hn::Sub(rest, hn::Load(d, dx2 + i)), zero);
-          hn::Store(hn::MulAdd(w, w, hn::Load(d, row + i)), d, row + i);
-        }
-      }
+// The x and y of one layer of a block, which all its layers share.
+constexpr std::size_t kLayer = kBlockX * kBlockY;
+static_assert(kLayer % kLanes == 0);
+struct Layer {
+  HWY_ALIGN float x[kLayer];
+  HWY_ALIGN float y[kLayer];
+  Layer(const glm::vec3& low, float spacing) {
+    for (std::size_t i = 0; i < kLayer; ++i) {
+      x[i] = low.x + spacing * static_cast<float>(i % kBlockX);
+      y[i] = low.y + spacing * static_cast<float>(i / kBlockX);
     }
   }
-  for (std::size_t i = 0; i < kBlockPoints; ++i) sums[i] = acc[i];
+};
+
+// Calls add(accumulated vector, z term, xy term) for each of a block's vectors of points: the
+// squared relative distance of a point is the sum of the two terms. The accumulators fill eight
+// registers of 16 lanes.
+template <class Prepare, class Add>
+void overBlock(const GeneratorList& generators, const glm::vec3& low, float spacing,
+               const Prepare& prepare, const Add& add, float* out) {
+  const Tag d;
+  const Layer layer(low, spacing);
+  constexpr std::size_t kPerLayer = kLayer / kLanes;
+  V acc[kPerLayer * kBlockZ];
+  for (V& a : acc) a = hn::Zero(d);
+  for (std::size_t k = 0; k < generators.count; ++k) {
+    const float inverse2 = generators.inverse_radius[k] * generators.inverse_radius[k];
+    const V scale = hn::Set(d, inverse2), gx = hn::Set(d, generators.x[k]),
+            gy = hn::Set(d, generators.y[k]);
+    V xy[kPerLayer];
+    for (std::size_t i = 0; i < kPerLayer; ++i) {
+      const V ox = hn::Sub(hn::Load(d, layer.x + i * kLanes), gx),
+              oy = hn::Sub(hn::Load(d, layer.y + i * kLanes), gy);
+      xy[i] = hn::Mul(hn::MulAdd(ox, ox, hn::Mul(oy, oy)), scale);
+    }
+    const auto prepared = prepare(generators.inverse_radius[k], scale);
+    for (std::size_t z = 0; z < kBlockZ; ++z) {
+      const float oz = low.z + spacing * static_cast<float>(z) - generators.z[k];
+      const float z2 = oz * oz * inverse2;
+      for (std::size_t i = 0; i < kPerLayer; ++i)
+        acc[z * kPerLayer + i] = add(acc[z * kPerLayer + i], prepared, z2, xy[i]);
+    }
+  }
+  for (std::size_t i = 0; i < kPerLayer * kBlockZ; ++i) hn::StoreU(acc[i], d, out + i * kLanes);
 }
 
-void SumOnBlock(const Norm& norm, const PackedGenerator* generators, std::size_t count,
-                const glm::vec3& low, float spacing, float* sums) {
-  if (norm.kind == Norm::Kind::kL2)
-    return SumOnBlockEuclidean(generators, count, low, spacing, sums);
-  HWY_ALIGN float x[kBlockPoints], y[kBlockPoints], z[kBlockPoints];
-  for (int i = 0; i < kBlockPoints; ++i) {
-    x[i] = low.x + spacing * static_cast<float>(i % kBlockX);
-    y[i] = low.y + spacing * static_cast<float>(i / kBlockX % kBlockY);
-    z[i] = low.z + spacing * static_cast<float>(i / (kBlockX * kBlockY));
+void SumOnBlock(const Norm& norm, const GeneratorList& generators, const glm::vec3& low,
+                float spacing, float* sums) {
+  const Tag d;
+  if (norm.kind == Norm::Kind::kL2) {
+    const V zero = hn::Zero(d);
+    overBlock(
+        generators, low, spacing, [](float, V) { return 0; },
+        [&](V acc, int, float z2, V xy) {
+          const V w = hn::Max(hn::Sub(hn::Set(d, 1.0f - z2), xy), zero);
+          return hn::MulAdd(w, w, acc);
+        },
+        sums);
+    return;
   }
-  SumAtPoints(norm, generators, count, {x, y, z, kBlockPoints}, sums);
+  const Layer layer(low, spacing);
+  for (int z = 0; z < kBlockZ; ++z) {
+    float zs[kLayer];
+    for (float& v : zs) v = low.z + spacing * static_cast<float>(z);
+    SumAtPoints(norm, generators, {layer.x, layer.y, zs, kLayer},
+                sums + static_cast<std::size_t>(z) * kLayer);
+  }
 }
 
 // |Hessian|_2 of (2) at relative distance s is max(4 (1 - s^2), 12 s^2 - 4) / r^2 inside the
 // radius, 0 outside (eigenvalues 12 s^2 - 4 along the offset, -4 (1 - s^2) across it). Over a cell
 // with half diagonal delta (relative to r) around a centre at s, s' lies in [s - delta, s + delta],
 // and 2 s delta <= delta (1 + s^2) gives bounds of s'^2 that are linear in s^2: no root needed.
-void CurvatureOnBlock(const PackedGenerator* generators, std::size_t count, const glm::vec3& low,
-                      float spacing, float* bounds) {
+void CurvatureOnBlock(const GeneratorList& generators, const glm::vec3& low, float spacing,
+                      float* bounds) {
   const Tag d;
-  constexpr std::size_t kRow = kBlockX;
-  HWY_ALIGN float acc[kBlockPoints] = {};
-  HWY_ALIGN float px[kRow], dx2[kRow];
-  const float half = 0.5f * spacing;
-  for (int i = 0; i < kBlockX; ++i) px[i] = low.x + half + spacing * static_cast<float>(i);
-  const V one = hn::Set(d, 1.0f), zero = hn::Zero(d);
-  for (std::size_t k = 0; k < count; ++k) {
-    const PackedGenerator& g = generators[k];
-    const float inverse2 = g.inverse_radius * g.inverse_radius;
-    const float delta = 0.8660255f * spacing * g.inverse_radius;
-    const float limit = (1.0f + delta) * (1.0f + delta);
-    const V gx = hn::Set(d, g.x), scale = hn::Set(d, inverse2);
-    for (std::size_t i = 0; i < kRow; i += hn::Lanes(d)) {
-      const V o = hn::Sub(hn::Load(d, px + i), gx);
-      hn::Store(hn::Mul(hn::Mul(o, o), scale), d, dx2 + i);
-    }
-    const V near_slope = hn::Set(d, -4.0f * (1.0f - delta)),
-            near_offset = hn::Set(d, 4.0f + 4.0f * (delta - delta * delta)),
-            far_slope = hn::Set(d, 1.0f + delta), far_offset = hn::Set(d, delta + delta * delta);
-    float* row = acc;
-    for (int z = 0; z < kBlockZ; ++z) {
-      const float oz = low.z + half + spacing * static_cast<float>(z) - g.z;
-      for (int y = 0; y < kBlockY; ++y, row += kBlockX) {
-        const float oy = low.y + half + spacing * static_cast<float>(y) - g.y;
-        const float dyz2 = (oy * oy + oz * oz) * inverse2;
-        if (dyz2 >= limit) continue;
-        for (std::size_t i = 0; i < kRow; i += hn::Lanes(d)) {
-          const V s2 = hn::Add(hn::Set(d, dyz2), hn::Load(d, dx2 + i));
-          const V inner = hn::MulAdd(near_slope, s2, near_offset);
-          const V outer =
-              hn::MulSub(hn::Set(d, 12.0f), hn::Min(one, hn::MulAdd(far_slope, s2, far_offset)),
-                         hn::Set(d, 4.0f));
-          const V bound =
-              hn::IfThenElse(hn::Lt(s2, hn::Set(d, limit)), hn::Max(inner, outer), zero);
-          hn::Store(hn::MulAdd(bound, scale, hn::Load(d, row + i)), d, row + i);
-        }
-      }
-    }
-  }
-  for (std::size_t i = 0; i < kBlockPoints; ++i) bounds[i] = acc[i];
+  const V one = hn::Set(d, 1.0f), four = hn::Set(d, 4.0f), twelve = hn::Set(d, 12.0f);
+  struct Prepared {
+    V near_slope, near_offset, far_slope, far_offset, limit, scale;
+  };
+  overBlock(
+      generators, low + 0.5f * spacing, spacing,
+      [&](float inverse, V scale) {
+        const float delta = 0.8660255f * spacing * inverse;
+        return Prepared{hn::Set(d, -4.0f * (1.0f - delta)),
+                        hn::Set(d, 4.0f + 4.0f * (delta - delta * delta)),
+                        hn::Set(d, 1.0f + delta),
+                        hn::Set(d, delta + delta * delta),
+                        hn::Set(d, (1.0f + delta) * (1.0f + delta)),
+                        scale};
+      },
+      [&](V acc, const Prepared& p, float z2, V xy) {
+        const V s2 = hn::Add(hn::Set(d, z2), xy);
+        const V inner = hn::MulAdd(p.near_slope, s2, p.near_offset);
+        const V outer =
+            hn::MulSub(twelve, hn::Min(one, hn::MulAdd(p.far_slope, s2, p.far_offset)), four);
+        const V bound = hn::IfThenElseZero(hn::Lt(s2, p.limit), hn::Max(inner, outer));
+        return hn::MulAdd(bound, p.scale, acc);
+      },
+      bounds);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -268,31 +294,36 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace verdure {
 
+HWY_EXPORT(AppendInReach);
 HWY_EXPORT(SumOnBlock);
 HWY_EXPORT(CurvatureOnBlock);
 HWY_EXPORT(SumAtPoints);
 HWY_EXPORT(GradientAtPoints);
 
-void sumOnBlock(const Norm& norm, std::span<const PackedGenerator> generators, const glm::vec3& low,
+void appendInReach(const GeneratorList& list, std::size_t begin, std::size_t end,
+                   const glm::vec3& low, const glm::vec3& high, bool euclidean,
+                   GeneratorList& found) {
+  HWY_DYNAMIC_DISPATCH(AppendInReach)(list, begin, end, low, high, euclidean, found);
+}
+
+void sumOnBlock(const Norm& norm, const GeneratorList& generators, const glm::vec3& low,
                 float spacing, float* sums) {
-  HWY_DYNAMIC_DISPATCH(SumOnBlock)(norm, generators.data(), generators.size(), low, spacing, sums);
+  HWY_DYNAMIC_DISPATCH(SumOnBlock)(norm, generators, low, spacing, sums);
 }
 
-void curvatureOnBlock(std::span<const PackedGenerator> generators, const glm::vec3& low,
-                      float spacing, float* bounds) {
-  HWY_DYNAMIC_DISPATCH(CurvatureOnBlock)
-  (generators.data(), generators.size(), low, spacing, bounds);
+void curvatureOnBlock(const GeneratorList& generators, const glm::vec3& low, float spacing,
+                      float* bounds) {
+  HWY_DYNAMIC_DISPATCH(CurvatureOnBlock)(generators, low, spacing, bounds);
 }
 
-void sumAtPoints(const Norm& norm, std::span<const PackedGenerator> generators,
-                 const PointArrays& points, float* sums) {
-  HWY_DYNAMIC_DISPATCH(SumAtPoints)(norm, generators.data(), generators.size(), points, sums);
+void sumAtPoints(const Norm& norm, const GeneratorList& generators, const PointArrays& points,
+                 float* sums) {
+  HWY_DYNAMIC_DISPATCH(SumAtPoints)(norm, generators, points, sums);
 }
 
-void gradientAtPoints(const Norm& norm, std::span<const PackedGenerator> generators,
-                      const PointArrays& points, float* sums, float* gx, float* gy, float* gz) {
-  HWY_DYNAMIC_DISPATCH(GradientAtPoints)
-  (norm, generators.data(), generators.size(), points, sums, gx, gy, gz);
+void gradientAtPoints(const Norm& norm, const GeneratorList& generators, const PointArrays& points,
+                      float* sums, float* gx, float* gy, float* gz) {
+  HWY_DYNAMIC_DISPATCH(GradientAtPoints)(norm, generators, points, sums, gx, gy, gz);
 }
 
 }  // namespace verdure

@@ -2,7 +2,6 @@
 #define VERDURE_BAKE_FIELD_KERNELS_H_
 
 #include <cstddef>
-#include <span>
 
 #include "bake/generator_grid.h"
 
@@ -16,19 +15,25 @@ inline constexpr int kBlockY = 4;
 inline constexpr int kBlockZ = 4;
 inline constexpr int kBlockPoints = kBlockX * kBlockY * kBlockZ;
 
+/// Appends those generators of list[begin, end) to `found` that reach the box [low, high]:
+/// Euclidean distance, or (a superset for every other norm) the largest component.
+void appendInReach(const GeneratorList& list, std::size_t begin, std::size_t end,
+                   const glm::vec3& low, const glm::vec3& high, bool euclidean,
+                   GeneratorList& found);
+
 /// Kernel sums (2), (3) at one block of lattice points, x fastest; `low` is its first point.
-void sumOnBlock(const Norm& norm, std::span<const PackedGenerator> generators, const glm::vec3& low,
+void sumOnBlock(const Norm& norm, const GeneratorList& generators, const glm::vec3& low,
                 float spacing, float* sums);
 
 /// For each of a block's points, a bound of the second derivatives over the lattice cell whose
 /// lowest corner it is: sum over generators of sup |Hessian|_2, so that inside the cell the field
 /// is within 3/8 spacing^2 bound of the trilinear interpolation of its corners (Taylor's theorem
 /// about the point, its first-order terms cancel). Euclidean norm.
-void curvatureOnBlock(std::span<const PackedGenerator> generators, const glm::vec3& low,
-                      float spacing, float* bounds);
+void curvatureOnBlock(const GeneratorList& generators, const glm::vec3& low, float spacing,
+                      float* bounds);
 
 /// Points in structure-of-arrays form; `count` is a multiple of kPointLanes.
-inline constexpr std::size_t kPointLanes = 8;
+inline constexpr std::size_t kPointLanes = 16;
 struct PointArrays {
   const float* x;
   const float* y;
@@ -36,12 +41,12 @@ struct PointArrays {
   std::size_t count;
 };
 
-void sumAtPoints(const Norm& norm, std::span<const PackedGenerator> generators,
-                 const PointArrays& points, float* sums);
+void sumAtPoints(const Norm& norm, const GeneratorList& generators, const PointArrays& points,
+                 float* sums);
 
 /// Also the gradient with respect to the point.
-void gradientAtPoints(const Norm& norm, std::span<const PackedGenerator> generators,
-                      const PointArrays& points, float* sums, float* gx, float* gy, float* gz);
+void gradientAtPoints(const Norm& norm, const GeneratorList& generators, const PointArrays& points,
+                      float* sums, float* gx, float* gy, float* gz);
 
 }  // namespace verdure
 

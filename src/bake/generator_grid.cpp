@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "bake/field_kernels.h"
 #include "verdure/error.h"
 
 namespace verdure {
@@ -21,7 +22,7 @@ GeneratorGrid::GeneratorGrid(std::span<const Generator> generators, Norm::Kind n
     : euclidean_(norm == Norm::Kind::kL2) {
   if (generators.empty()) return;
   glm::vec3 low = generators[0].position, high = low;
-  float min_radius = generators[0].radius;
+  min_radius_ = generators[0].radius;
   for (std::size_t i = 0; i < generators.size(); ++i) {
     const Generator& g = generators[i];
     const float sum = g.position.x + g.position.y + g.position.z;
@@ -32,7 +33,7 @@ GeneratorGrid::GeneratorGrid(std::span<const Generator> generators, Norm::Kind n
     low = glm::min(low, g.position);
     high = glm::max(high, g.position);
     max_radius_ = std::max(max_radius_, g.radius);
-    min_radius = std::min(min_radius, g.radius);
+    min_radius_ = std::min(min_radius_, g.radius);
   }
   origin_ = low;
   extent_ = high - low;
@@ -56,10 +57,15 @@ GeneratorGrid::GeneratorGrid(std::span<const Generator> generators, Norm::Kind n
   }
   for (std::size_t c = 0; c < cell_count; ++c) first_[c + 1] += first_[c];
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-  packed_.resize(generators.size());
+  sorted_.reserve(generators.size());
+  sorted_.count = generators.size();
   for (std::size_t i = 0; i < generators.size(); ++i) {
     const glm::vec3 p = generators[i].position - origin_;
-    packed_[next[cell_of[i]]++] = {p.x, p.y, p.z, 1.0f / generators[i].radius};
+    const std::uint32_t at = next[cell_of[i]]++;
+    sorted_.x[at] = p.x;
+    sorted_.y[at] = p.y;
+    sorted_.z[at] = p.z;
+    sorted_.inverse_radius[at] = 1.0f / generators[i].radius;
   }
 }
 
@@ -70,32 +76,20 @@ glm::ivec3 GeneratorGrid::cellOf(const glm::vec3& relative) const {
 }
 
 void GeneratorGrid::gather(const glm::vec3& low, const glm::vec3& high,
-                           std::vector<PackedGenerator>& found) const {
-  found.clear();
-  if (packed_.empty()) return;
+                           GeneratorList& found) const {
+  found.count = 0;
+  if (sorted_.count == 0) return;
   const glm::vec3 reach_low = low - max_radius_, reach_high = high + max_radius_;
   for (int a = 0; a < 3; ++a)
     if (reach_high[a] < 0.0f || reach_low[a] > extent_[a]) return;
   const glm::ivec3 from = cellOf(reach_low), to = cellOf(reach_high);
   for (int z = from.z; z <= to.z; ++z)
     for (int y = from.y; y <= to.y; ++y) {
-      const std::size_t row = static_cast<std::size_t>((z * cells_.y + y) * cells_.x);
-      const std::uint32_t begin = first_[row + static_cast<std::size_t>(from.x)];
-      const std::uint32_t end = first_[row + static_cast<std::size_t>(to.x) + 1];
-      std::size_t n = found.size();
-      found.resize(n + (end - begin));  // trimmed below: appending without a branch
-      for (std::uint32_t i = begin; i < end; ++i) {
-        const PackedGenerator& g = packed_[i];
-        const float dx = std::max(std::max(low.x - g.x, g.x - high.x), 0.0f);
-        const float dy = std::max(std::max(low.y - g.y, g.y - high.y), 0.0f);
-        const float dz = std::max(std::max(low.z - g.z, g.z - high.z), 0.0f);
-        // Every Lp ball lies in the cube of the same radius.
-        const float d2 = euclidean_ ? dx * dx + dy * dy + dz * dz
-                                    : std::max(dx * dx, std::max(dy * dy, dz * dz));
-        found[n] = g;
-        n += d2 * g.inverse_radius * g.inverse_radius < 1.0f ? 1 : 0;
-      }
-      found.resize(n);
+      // Cells of a row follow each other, and so do their generators.
+      const std::size_t row =
+          static_cast<std::size_t>(z * cells_.y + y) * static_cast<std::size_t>(cells_.x);
+      appendInReach(sorted_, first_[row + static_cast<std::size_t>(from.x)],
+                    first_[row + static_cast<std::size_t>(to.x) + 1], low, high, euclidean_, found);
     }
 }
 

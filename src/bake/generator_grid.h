@@ -10,10 +10,18 @@
 
 namespace verdure {
 
-/// A generator as the kernels read it; position relative to GeneratorGrid::origin.
-struct PackedGenerator {
-  float x, y, z;
-  float inverse_radius;
+/// Generators as the kernels read them: structure of arrays, positions relative to
+/// GeneratorGrid::origin. The arrays are kPadding longer than `count`.
+struct GeneratorList {
+  static constexpr std::size_t kPadding = 64;
+  std::vector<float> x, y, z, inverse_radius;
+  std::size_t count = 0;
+
+  void reserve(std::size_t capacity) {
+    if (x.size() >= capacity + kPadding) return;
+    for (std::vector<float>* array : {&x, &y, &z, &inverse_radius})
+      array->resize(2 * capacity + kPadding);
+  }
 };
 
 /// Generators sorted into the cells of a uniform grid, so that those in reach of a box are found in
@@ -26,13 +34,13 @@ class GeneratorGrid {
   const glm::vec3& origin() const { return origin_; }
   /// Bounds of the generators' positions, relative to origin().
   const glm::vec3& extent() const { return extent_; }
+  float minRadius() const { return min_radius_; }
   float maxRadius() const { return max_radius_; }
-  std::size_t count() const { return packed_.size(); }
+  std::size_t count() const { return sorted_.count; }
 
   /// Replaces `found` by the generators whose influence can reach the box [low, high] (relative to
   /// origin()): exact for the Euclidean norm, a superset for others.
-  void gather(const glm::vec3& low, const glm::vec3& high,
-              std::vector<PackedGenerator>& found) const;
+  void gather(const glm::vec3& low, const glm::vec3& high, GeneratorList& found) const;
 
   /// Calls visit(low, high) with the bounds (relative to origin()) of each cell that holds
   /// generators.
@@ -53,12 +61,13 @@ class GeneratorGrid {
 
   glm::vec3 origin_{0.0f};
   glm::vec3 extent_{0.0f};
+  float min_radius_ = 0.0f;
   float max_radius_ = 0.0f;
   float cell_ = 1.0f;
   glm::ivec3 cells_{0};
   bool euclidean_ = true;
   std::vector<std::uint32_t> first_;  // per cell, and one more
-  std::vector<PackedGenerator> packed_;
+  GeneratorList sorted_;
 };
 
 }  // namespace verdure

@@ -66,16 +66,20 @@ void markNearSurface(const DensityField::State& field, const BlockLattice& coars
   const float h = coarse.lattice().spacing;
   const glm::vec3 span = glm::vec3(kBlock) * h;
   parallelChunks(coarse.slotCount(), 16, [&](std::size_t begin, std::size_t end) {
-    std::vector<PackedGenerator> generators;
+    GeneratorList generators;
     std::array<float, kBlockPoints> curvature{};
     for (std::size_t slot = begin; slot < end; ++slot) {
       const glm::ivec3 block = coarse.blockOf(slot);
       const PaddedBlock padded(coarse, block);
-      // A block whose corner values and neighbours are all far from tau still needs its bound: one
-      // cannot know how far is far without it.
       const glm::vec3 low = coarse.blockLow(field.grid, block);
       field.grid.gather(low, low + span, generators);
-      if (generators.empty()) continue;
+      if (generators.count == 0) continue;
+      // A first bound without the kernels, |Hessian|_2 <= 8 / r^2, settles most outer blocks.
+      float highest = 0.0f;
+      for (const float v : padded.value) highest = std::max(highest, v);
+      const float rough = 3.0f * h * h * field.weight * static_cast<float>(generators.count) /
+                          (field.grid.minRadius() * field.grid.minRadius());
+      if (highest + rough <= 0.999f * tau) continue;
       curvatureOnBlock(generators, low, h, curvature.data());
       for (int z = 0; z < kBlockZ; ++z)
         for (int y = 0; y < kBlockY; ++y)
@@ -143,7 +147,7 @@ class Extractor {
 
  private:
   struct Scratch {
-    std::vector<PackedGenerator> generators;
+    GeneratorList generators;
     std::vector<float> lanes;     // seven arrays: x, y, z, sum, gradient
     std::vector<glm::vec3> away;  // along the lattice edge, from inside to outside
   };

@@ -1,6 +1,7 @@
 #ifndef VERDURE_BAKE_BLOCK_LATTICE_H_
 #define VERDURE_BAKE_BLOCK_LATTICE_H_
 
+#include <memory>
 #include <vector>
 
 #include "bake/field.h"
@@ -37,7 +38,9 @@ class BlockLattice {
   const glm::ivec3& blockOf(std::size_t slot) const { return active_[slot]; }
   /// Slot of a block, kAbsent if it is not marked or outside.
   std::int32_t slotOf(const glm::ivec3& block) const;
-  const float* values(std::size_t slot) const { return values_.data() + slot * kBlockPoints; }
+  const float* values(std::size_t slot) const { return values_.get() + slot * kBlockPoints; }
+  /// Least and largest value of a block.
+  const glm::vec2& range(std::size_t slot) const { return ranges_[slot]; }
   /// Where a block's first point lies, relative to the generators' origin.
   glm::vec3 blockLow(const GeneratorGrid& grid, const glm::ivec3& block) const;
   float valueOrZero(const glm::ivec3& point) const;
@@ -56,7 +59,8 @@ class BlockLattice {
   std::vector<std::uint8_t> marked_;
   std::vector<std::int32_t> slot_;
   std::vector<glm::ivec3> active_;
-  std::vector<float> values_;
+  std::unique_ptr<float[]> values_;  // not cleared first: every value is written
+  std::vector<glm::vec2> ranges_;
 };
 
 }  // namespace verdure

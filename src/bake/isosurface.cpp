@@ -1,4 +1,6 @@
-#include <bit>
+#include <algorithm>
+#include <array>
+#include <limits>
 #include <string>
 
 #include "bake/block_lattice.h"
@@ -103,9 +105,12 @@ void markNearSurface(const DensityField::State& field, const BlockLattice& coars
   });
 }
 
+constexpr std::array<std::uint8_t, 8> kBitCount = {0, 1, 1, 2, 1, 2, 2, 3};
+
 /// Which lattice edges of a block's own points carry a vertex, and where its vertices begin.
 struct BlockEdges {
   std::array<std::uint8_t, kBlockPoints> axes{};     // bit a: the edge towards +a crosses
+  std::array<std::uint8_t, kBlockPoints> cell{};     // the case of the cell above the point
   std::array<std::uint16_t, kBlockPoints> offset{};  // vertices of earlier points of the block
 };
 
@@ -138,7 +143,7 @@ class Extractor {
           continue;
         const PaddedBlock padded(lattice_, lattice_.blockOf(slot));
         degenerate[slot] = emitVertices(slot, padded, scratch);
-        emitTriangles(slot, padded);
+        emitTriangles(slot);
       }
     });
     for (const std::size_t d : degenerate) statistics.degenerate_gradients += d;
@@ -152,13 +157,6 @@ class Extractor {
     std::vector<glm::vec3> away;  // along the lattice edge, from inside to outside
   };
 
-  int insideBits(const PaddedBlock& padded, int at) const {
-    int bits = 0;
-    for (std::size_t c = 0; c < 8; ++c)
-      bits |= (padded.value[static_cast<std::size_t>(at + kCorner[c])] > tau_ ? 1 : 0) << c;
-    return bits;
-  }
-
   // A cell with an absent corner was proved to hold no surface.
   static bool complete(const PaddedBlock& padded, int at) {
     if (!padded.any_absent) return true;
@@ -167,8 +165,24 @@ class Extractor {
     return true;
   }
 
+  // Whether the cells of a block can hold surface at all, from the ranges of its eight blocks.
+  bool mayCross(const glm::ivec3& block) const {
+    float least = std::numeric_limits<float>::max(), most = 0.0f;
+    for (int n = 0; n < 8; ++n) {
+      const std::int32_t slot = lattice_.slotOf(block + glm::ivec3(n & 1, n >> 1 & 1, n >> 2));
+      if (slot == BlockLattice::kAbsent) continue;
+      const glm::vec2 range = lattice_.range(static_cast<std::size_t>(slot));
+      least = std::min(least, range.x);
+      most = std::max(most, range.y);
+    }
+    return least <= tau_ && most > tau_;
+  }
+
   void classify(std::size_t slot) {
+    if (!mayCross(lattice_.blockOf(slot))) return;
     const PaddedBlock padded(lattice_, lattice_.blockOf(slot));
+    std::array<std::uint8_t, kPaddedPoints> inside{};
+    for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = padded.value[i] > tau_ ? 1 : 0;
     BlockEdges& edges = edges_[slot];
     std::uint32_t vertices = 0, triangles = 0;
     std::size_t own = 0;
@@ -176,18 +190,24 @@ class Extractor {
       for (int y = 0; y < kBlockY; ++y)
         for (int x = 0; x < kBlockX; ++x, ++own) {
           const int at = paddedIndex(x, y, z);
-          const bool inside = padded.value[static_cast<std::size_t>(at)] > tau_;
-          unsigned axes = 0;
-          for (unsigned a = 0; a < 3; ++a) {
-            const auto next = static_cast<std::size_t>(at + kCorner[std::size_t{1} << a]);
-            if (!padded.absent[next] && (padded.value[next] > tau_) != inside) axes |= 1u << a;
-          }
-          edges.axes[own] = static_cast<std::uint8_t>(axes);
+          unsigned bits = 0;
+          for (unsigned c = 0; c < 8; ++c)
+            bits |= static_cast<unsigned>(inside[static_cast<std::size_t>(at + kCorner[c])]) << c;
           edges.offset[own] = static_cast<std::uint16_t>(vertices);
-          vertices += static_cast<std::uint32_t>(std::popcount(axes));
-          const int bits = insideBits(padded, at);
-          if (bits != 0 && bits != 255 && complete(padded, at))
-            triangles += cellCases()[static_cast<std::size_t>(bits)].triangle_count;
+          if (bits == 0 || bits == 255) continue;
+          // Edges towards +x, +y, +z cross where corners 1, 2, 4 differ from corner 0.
+          unsigned axes = bits & 1 ? ~bits : bits;
+          axes = (axes >> 1 & 1) | (axes >> 1 & 2) | (axes >> 2 & 4);
+          if (padded.any_absent)
+            for (unsigned a = 0; a < 3; ++a)
+              if (padded.absent[static_cast<std::size_t>(at + kCorner[std::size_t{1} << a])])
+                axes &= ~(1u << a);
+          edges.axes[own] = static_cast<std::uint8_t>(axes);
+          vertices += kBitCount[axes];
+          if (complete(padded, at)) {
+            edges.cell[own] = static_cast<std::uint8_t>(bits);
+            triangles += cellCases()[bits].triangle_count;
+          }
         }
     first_vertex_[slot + 1] = vertices;
     first_triangle_[slot + 1] = triangles;
@@ -206,7 +226,8 @@ class Extractor {
     std::size_t n = 0, own = 0;
     for (int z = 0; z < kBlockZ; ++z)
       for (int y = 0; y < kBlockY; ++y)
-        for (int x = 0; x < kBlockX; ++x, ++own)
+        for (int x = 0; x < kBlockX; ++x, ++own) {
+          if (edges_[slot].axes[own] == 0) continue;
           for (int a = 0; a < 3; ++a) {
             if ((edges_[slot].axes[own] >> a & 1) == 0) continue;
             const int at = paddedIndex(x, y, z);
@@ -225,6 +246,7 @@ class Extractor {
             scratch.away[n] = v0 > v1 ? along : -along;
             ++n;
           }
+        }
     VERDURE_CHECK_EQ(n, count);
     for (; n < lanes; ++n)
       for (std::size_t a = 0; a < 3; ++a) px[a * lanes + n] = px[a * lanes + count - 1];
@@ -248,32 +270,35 @@ class Extractor {
     return degenerate;
   }
 
-  void emitTriangles(std::size_t slot, const PaddedBlock& padded) {
+  void emitTriangles(std::size_t slot) {
     std::size_t at_index = 3 * std::size_t{first_triangle_[slot]};
+    std::array<std::int32_t, 8> slots{};
+    for (int n = 0; n < 8; ++n)
+      slots[static_cast<std::size_t>(n)] =
+          lattice_.slotOf(lattice_.blockOf(slot) + glm::ivec3(n & 1, n >> 1 & 1, n >> 2));
+    std::size_t own = 0;
     for (int z = 0; z < kBlockZ; ++z)
       for (int y = 0; y < kBlockY; ++y)
-        for (int x = 0; x < kBlockX; ++x) {
-          const int at = paddedIndex(x, y, z);
-          const int bits = insideBits(padded, at);
-          if (bits == 0 || bits == 255 || !complete(padded, at)) continue;
-          const CellCase& cell = cellCases()[static_cast<std::size_t>(bits)];
+        for (int x = 0; x < kBlockX; ++x, ++own) {
+          const CellCase& cell = cellCases()[edges_[slot].cell[own]];
           for (std::size_t i = 0; i < 3u * cell.triangle_count; ++i)
-            surface_.indices[at_index++] =
-                vertexOf(lattice_.blockOf(slot), {x, y, z}, cell.edges[i]);
+            surface_.indices[at_index++] = vertexOf(slots, {x, y, z}, cell.edges[i]);
         }
     VERDURE_CHECK_EQ(at_index, 3 * std::size_t{first_triangle_[slot + 1]});
   }
 
-  std::uint32_t vertexOf(const glm::ivec3& block, const glm::ivec3& cell, int edge) const {
+  /// `slots`: of the block and its next neighbours, by bits x, y, z.
+  std::uint32_t vertexOf(const std::array<std::int32_t, 8>& slots, const glm::ivec3& cell,
+                         int edge) const {
     const int corner = edgeCorner(edge);
     const glm::ivec3 point = cell + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
     const glm::ivec3 side = point / kBlock;
-    const auto slot = static_cast<std::size_t>(lattice_.slotOf(block + side));
+    const auto slot =
+        static_cast<std::size_t>(slots[static_cast<std::size_t>(side.x + 2 * side.y + 4 * side.z)]);
     const glm::ivec3 in = point - side * kBlock;
     const auto own = static_cast<std::size_t>(in.x + kBlockX * (in.y + kBlockY * in.z));
     const unsigned earlier = edges_[slot].axes[own] & ((1u << (edge / 4)) - 1u);
-    return first_vertex_[slot] + edges_[slot].offset[own] +
-           static_cast<std::uint32_t>(std::popcount(earlier));
+    return first_vertex_[slot] + edges_[slot].offset[own] + kBitCount[earlier];
   }
 
   const DensityField::State& field_;

@@ -2,6 +2,7 @@
 #define VERDURE_DENSITY_H_
 
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <optional>
 #include <span>
@@ -37,6 +38,8 @@ struct DensityOptions {
   float blend = 1.0f;                                   ///< 0 = leaf normal, 1 = crown normal
   std::uint32_t seed = 1;                               ///< of the random fraction
   std::size_t max_memory_bytes = std::size_t{4} << 30;  ///< a grid that needs more is refused
+  /// Called now and then with the step and its share done in [0, 1], from one thread.
+  std::function<void(const char* step, double share)> progress;
 };
 
 /// Every number that a bake found or measured.
@@ -49,7 +52,8 @@ struct DensityReport {
   float field_min_at_vertices = 0, field_max_at_vertices = 0;  ///< F, i.e. with - tau
   glm::ivec3 grid_points{0};
   float voxel_m = 0;
-  std::size_t grid_points_evaluated = 0;
+  std::size_t grid_points_evaluated = 0;  ///< on it; the rest was proved to be off the surface
+  std::size_t grid_bytes = 0;             ///< memory of all lattices
   std::size_t surface_vertices = 0, surface_triangles = 0, surface_components = 0;
   bool watertight = false;  ///< every edge has exactly two triangles, opposite in direction
   std::size_t degenerate_gradients = 0;  ///< surface vertices without a usable gradient
@@ -67,8 +71,9 @@ struct DensityBake {
 };
 
 /// Bakes one plant. `surface`, if given, replaces the extracted surface (its normals are used as
-/// they are, or computed from faces if absent). Throws Error: no foliage, tau above the largest
-/// kernel sum (says it), parameters out of range, a grid over max_memory_bytes.
+/// they are, or computed from faces if absent). Throws Error: no foliage, fewer than two leaves
+/// with an area, tau above the largest kernel sum (says it), parameters out of range, a grid over
+/// max_memory_bytes. The plant's leaves must have been found (findLeaves).
 DensityBake bakeDensity(const Plant& plant, const DensityOptions& options = {},
                         const Surface* surface = nullptr);
 
@@ -81,7 +86,11 @@ struct Placement {
 };
 
 /// Bakes a group of plants in one common field, so that neighbours darken each other: one result
-/// for each placement, in the plant's own frame (normals rotated back).
+/// for each placement, in the plant's own frame (normals rotated back; the surface, the same for
+/// all, in the population's frame and only in the first result). Such plants cannot be instanced
+/// any more. `grid` counts along the longest side of the largest plant's field; parameters that
+/// are not set are found from the placement with the most leaves, so that a plant which stands
+/// alone is lit as by bakeDensity.
 std::vector<DensityBake> bakeDensityPopulation(std::span<const Plant* const> plants,
                                                std::span<const Placement> placements,
                                                const DensityOptions& options = {});

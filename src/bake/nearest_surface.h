@@ -1,0 +1,42 @@
+#ifndef VERDURE_BAKE_NEAREST_SURFACE_H_
+#define VERDURE_BAKE_NEAREST_SURFACE_H_
+
+#include <memory>
+
+#include "verdure/field.h"
+
+namespace verdure {
+
+/// Finds the vertex or point of a surface that is nearest to a point.
+class NearestSurface {
+ public:
+  /// `surface` must outlive this and have at least one triangle.
+  explicit NearestSurface(const Surface& surface);
+  ~NearestSurface();
+
+  /// The nearest vertex, the one with the lowest index when several are.
+  std::uint32_t vertex(const glm::vec3& point) const;
+
+  struct Point {
+    glm::vec3 position{0.0f};
+    glm::vec3 normal{0.0f};  ///< interpolated from the triangle's vertices, unit
+  };
+  /// The nearest point of the triangles around the nearest vertices and, from there, of their
+  /// neighbours while that comes nearer: on a mesh of small triangles this is the nearest point.
+  Point point(const glm::vec3& from) const;
+
+  /// Every edge has exactly two triangles, with opposite directions.
+  bool watertight() const;
+  std::size_t components() const;
+
+ private:
+  struct Tree;
+  const Surface& surface_;
+  std::vector<std::uint32_t> first_;      // per vertex, into triangles_
+  std::vector<std::uint32_t> triangles_;  // of each vertex
+  std::unique_ptr<Tree> tree_;
+};
+
+}  // namespace verdure
+
+#endif  // VERDURE_BAKE_NEAREST_SURFACE_H_

@@ -1,0 +1,92 @@
+#include "verdure/grow.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "plant/bark_texture.h"
+#include "plant/leaf_texture.h"
+#include "plant/species.h"
+#include "plant/tree_mesh.h"
+#include "plant/weber_penn.h"
+#include "verdure/error.h"
+
+namespace verdure {
+namespace {
+
+/// Plant::branches from stems.
+std::vector<Branch> branchesOf(std::vector<Stem>& stems) {
+  std::vector<Branch> branches(stems.size());
+  for (std::size_t i = 0; i < stems.size(); ++i) {
+    Branch& branch = branches[i];
+    branch.parent = stems[i].parent;
+    branch.level = stems[i].level;
+    if (branch.parent != kNone) {
+      const Stem& parent = stems[branch.parent];
+      branch.parent_offset = std::clamp(
+          (stems[i].parent_along - parent.start) / (parent.length - parent.start), 0.0f, 1.0f);
+    }
+  }
+  for (std::size_t i = 0; i < stems.size(); ++i) branches[i].points = std::move(stems[i].points);
+  return branches;
+}
+
+}  // namespace
+
+Plant grow(const GrowOptions& options) {
+  const Species& species = findSpecies(options.species);
+  TreeParameters parameters = species.parameters;
+  for (const auto& [name, value] : options.set) setParameter(parameters, name, value);
+  if (options.texture_size < 16 || options.texture_size > 8192 || options.texture_size % 2 != 0)
+    throw Error("texture_size", std::to_string(options.texture_size) + " is out of range",
+                "give an even number from 16 to 8192");
+  const auto shape = static_cast<LeafShape>(static_cast<int>(parameters.leaf_shape));
+
+  Plant plant;
+  plant.name = options.species;
+  Skeleton skeleton = growSkeleton(parameters, options.seed);
+  plant.meshes.push_back(meshStems(skeleton, parameters, species.bark.width_m));
+  if (!skeleton.leaves.empty()) {
+    plant.meshes.push_back(meshLeaves(skeleton, shape, species.blade, options.leaf_form, 1, plant));
+    plant.meshes.back().material = 1;
+  }
+  plant.branches = branchesOf(skeleton.stems);
+
+  // Bark and leaves look the same for all plants of a species: textures do not depend on the seed.
+  BarkTexture bark = makeBark(species.bark, options.texture_size, 1);
+  plant.textures.push_back({"bark", std::move(bark.color)});
+  plant.textures.push_back({"bark normal", std::move(bark.normal)});
+  Material wood;
+  wood.name = "bark";
+  wood.base_color_texture = 0;
+  wood.normal_texture = 1;
+  plant.materials.push_back(wood);
+  if (!skeleton.leaves.empty()) {
+    Texture leaf{"leaf", makeLeafTexture(shape, species.leaf, parameters.leaf_scale_x,
+                                         options.texture_size, 1)};
+    leaf.clamp_u = leaf.clamp_v = true;
+    plant.textures.push_back(std::move(leaf));
+    Material foliage;
+    foliage.name = "leaf";
+    foliage.base_color_texture = 2;
+    foliage.alpha_mode = AlphaMode::kMask;
+    foliage.alpha_cutoff = species.alpha_cutoff;
+    foliage.double_sided = true;
+    plant.materials.push_back(foliage);
+  }
+  return plant;
+}
+
+const std::vector<SpeciesInfo>& speciesList() {
+  static const std::vector<SpeciesInfo> list = [] {
+    std::vector<SpeciesInfo> infos;
+    for (const Species& species : allSpecies()) infos.push_back(species.info);
+    return infos;
+  }();
+  return list;
+}
+
+std::vector<ParameterInfo> speciesParameters(const std::string& species) {
+  return listParameters(findSpecies(species).parameters);
+}
+
+}  // namespace verdure

@@ -1,0 +1,174 @@
+#include "plant/leaf_shape.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace verdure {
+namespace {
+
+constexpr float kPi = 3.14159265f;
+constexpr float kStalkHalfWidth = 0.018f;
+constexpr int kSteps = 120;
+
+float ramp(float x, float low, float high) {
+  const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
+  return t * t * (3 - 2 * t);
+}
+
+/// Teeth: 0 at the root of a tooth, 1 at its tip, leaning forward.
+float tooth(float s, float count) {
+  const float f = s * count - std::floor(s * count);
+  return f < 0.75f ? f / 0.75f : (1 - f) / 0.25f;
+}
+
+/// An arch over [0, 1], 0 at both ends, with its top moved by `lean`.
+float arch(float s, float lean) {
+  return std::max(std::sin(kPi * std::pow(s, lean)), 0.0f);
+}
+
+/// Half the width of the blade at s in [0, 1] from its base to its tip, at most 0.485.
+float halfWidth(LeafShape shape, float s) {
+  switch (shape) {
+    case LeafShape::kElliptic:
+      return 0.48f * std::pow(arch(s, 1.1f), 0.8f) * (1 - 0.35f * ramp(s, 0.82f, 1.0f));
+    case LeafShape::kRound: {
+      const float c = 2 * std::pow(s, 0.82f) - 1;
+      const float round = std::sqrt(std::max(0.0f, 1 - c * c));
+      return (0.45f + 0.03f * tooth(s, 15)) * round * (1 - 0.3f * ramp(s, 0.88f, 1.0f));
+    }
+    case LeafShape::kLanceolate:
+      return (0.46f + 0.02f * tooth(s, 26)) * std::pow(arch(s, 0.72f), 0.95f);
+    case LeafShape::kTriangular: {
+      const float base = std::pow(std::min(s / 0.2f, 1.0f), 0.55f);
+      const float side = s < 0.2f ? 1.0f : std::pow(std::max(1 - (s - 0.2f) / 0.8f, 0.0f), 1.15f);
+      return base * side * (0.43f + 0.035f * tooth(s, 9) + 0.02f * tooth(s, 27));
+    }
+    default:
+      return 0.48f * std::pow(arch(s, 0.95f), 0.62f);
+  }
+}
+
+/// Right-hand half of black oak's outline, as (half width, height): lobes with a main point and a
+/// side point each, rounded sinuses between them.
+const glm::vec2 kOakHalf[] = {
+    {0.05f, 0.115f},  {0.13f, 0.15f},  {0.215f, 0.17f}, {0.205f, 0.2f},  {0.13f, 0.235f},
+    {0.085f, 0.265f}, {0.09f, 0.295f}, {0.17f, 0.315f}, {0.3f, 0.345f},  {0.42f, 0.40f},
+    {0.37f, 0.415f},  {0.385f, 0.46f}, {0.29f, 0.45f},  {0.18f, 0.465f}, {0.12f, 0.49f},
+    {0.125f, 0.52f},  {0.22f, 0.555f}, {0.36f, 0.60f},  {0.48f, 0.675f}, {0.42f, 0.685f},
+    {0.415f, 0.735f}, {0.30f, 0.715f}, {0.19f, 0.705f}, {0.145f, 0.72f}, {0.155f, 0.75f},
+    {0.225f, 0.79f},  {0.31f, 0.865f}, {0.24f, 0.865f}, {0.20f, 0.895f}, {0.12f, 0.87f},
+    {0.10f, 0.885f},  {0.085f, 0.93f}, {0.03f, 0.955f}};
+
+struct Finger {
+  float angle_deg, length;
+};
+const Finger kFingers[] = {{0, 0.645f}, {40, 0.60f}, {80, 0.49f}, {128, 0.29f}};
+
+std::vector<glm::vec2> mirrored(const std::vector<glm::vec2>& right) {
+  std::vector<glm::vec2> polygon = right;
+  for (auto p = right.rbegin(); p != right.rend(); ++p) polygon.emplace_back(-p->x, p->y);
+  return polygon;
+}
+
+/// Right-hand side of a palmate blade, foot to tip: fingers from the lowest to the middle one.
+void addPalm(std::vector<glm::vec2>& right) {
+  const glm::vec2 center = palmCenter();
+  const auto at = [&](float angle_deg, float radius) {
+    const float a = angle_deg * kPi / 180;
+    const glm::vec2 p = center + radius * glm::vec2(std::sin(a), std::cos(a));
+    return glm::vec2(std::min(p.x, 0.49f), p.y);
+  };
+  right.push_back(at(160, 0.05f));
+  for (int i = 3; i >= 0; --i) {
+    const auto [angle, length] = kFingers[i];
+    const float radians = angle * kPi / 180;
+    const glm::vec2 along(std::sin(radians), std::cos(radians));
+    const glm::vec2 across(-along.y, along.x);  // anticlockwise: towards the middle finger
+    const auto side = [&](float sign) {
+      // Widest at half the finger, with teeth towards the tip.
+      std::vector<glm::vec2> points;
+      for (int k = 0; k <= 14; ++k) {
+        const float f = 0.34f + 0.63f * static_cast<float>(k) / 14;
+        const float body = std::sin(kPi * std::pow((f - 0.1f) / 0.9f, 0.9f));
+        const float width = 0.2f * length * body * (k % 2 == 0 ? 1.0f : 0.86f);
+        const glm::vec2 p = center + along * (f * length) + sign * across * width;
+        points.emplace_back(std::min(p.x, 0.49f), p.y);
+      }
+      return points;
+    };
+    const auto outer = side(-1);
+    right.insert(right.end(), outer.begin(), outer.end());
+    right.push_back(at(angle, length));
+    if (i == 0) break;
+    const auto inner = side(+1);
+    right.insert(right.end(), inner.rbegin(), inner.rend());
+    right.push_back(at(0.5f * (angle + kFingers[i - 1].angle_deg), 0.30f * length));
+  }
+}
+
+}  // namespace
+
+glm::vec2 palmCenter() {
+  return {0.0f, 0.34f};
+}
+
+std::vector<glm::vec2> palmTips() {
+  std::vector<glm::vec2> tips;
+  for (const auto& [angle, length] : kFingers)
+    for (const float side : {1.0f, -1.0f}) {
+      if (angle == 0 && side < 0) continue;
+      const float a = angle * kPi / 180;
+      tips.push_back(palmCenter() + length * glm::vec2(side * std::sin(a), std::cos(a)));
+    }
+  return tips;
+}
+
+std::vector<glm::vec2> leafOutline(LeafShape shape) {
+  if (shape == LeafShape::kNeedles) return {};
+  std::vector<glm::vec2> right{{kStalkHalfWidth, 0.0f}};
+  if (shape == LeafShape::kPalmate) {
+    right.emplace_back(kStalkHalfWidth, palmCenter().y - 0.04f);
+    addPalm(right);
+  } else if (shape == LeafShape::kLobed) {
+    right.emplace_back(kStalkHalfWidth, kLeafStalk);
+    right.insert(right.end(), std::begin(kOakHalf), std::end(kOakHalf));
+    right.emplace_back(0.0f, 0.995f);
+  } else {
+    for (int i = 0; i <= kSteps; ++i) {
+      const float s = static_cast<float>(i) / kSteps;
+      const float w = halfWidth(shape, s);
+      right.emplace_back(s < 0.5f ? std::max(w, kStalkHalfWidth) : w,
+                         kLeafStalk + (0.995f - kLeafStalk) * s);
+    }
+  }
+  return mirrored(right);
+}
+
+std::vector<glm::vec2> leafHull(LeafShape shape) {
+  if (shape == LeafShape::kNeedles) return {{0.5f, 0.0f}, {0.5f, 1.0f}};
+  const std::vector<glm::vec2> outline = leafOutline(shape);
+  float low = 0.28f, high = 0.72f;
+  if (shape == LeafShape::kLanceolate) low = 0.24f, high = 0.62f;
+  if (shape == LeafShape::kTriangular) low = 0.2f, high = 0.5f;
+  if (shape == LeafShape::kRound) low = 0.25f, high = 0.8f;
+  if (shape == LeafShape::kPalmate) low = 0.2f, high = 0.68f;
+  if (shape == LeafShape::kLobed) low = 0.17f, high = 0.76f;
+  // The narrowest polyline (0, 0), (a, low), (b, high), (0, 1) that keeps the outline inside: the
+  // bounds of the two ends first, then both raised by what the middle lacks.
+  float a = 0.02f, b = 0.02f;
+  for (const glm::vec2& p : outline) {
+    if (p.y > 0.04f && p.y <= low) a = std::max(a, p.x * low / p.y);
+    if (p.y >= high && p.y < 0.99f) b = std::max(b, p.x * (1 - high) / (1 - p.y));
+  }
+  a = std::min(a, 0.5f);
+  b = std::min(b, 0.5f);
+  float lack = 0;
+  for (const glm::vec2& p : outline)
+    if (p.y > low && p.y < high) {
+      const float t = (p.y - low) / (high - low);
+      lack = std::max(lack, p.x - ((1 - t) * a + t * b));
+    }
+  return {{std::min(a + lack, 0.5f), low}, {std::min(b + lack, 0.5f), high}};
+}
+
+}  // namespace verdure

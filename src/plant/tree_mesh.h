@@ -1,0 +1,28 @@
+#ifndef VERDURE_PLANT_TREE_MESH_H_
+#define VERDURE_PLANT_TREE_MESH_H_
+
+#include "plant/leaf_shape.h"
+#include "plant/weber_penn.h"
+#include "verdure/grow.h"
+#include "verdure/plant.h"
+
+namespace verdure {
+
+/// All stems as closed generalised cylinders with rounded tips. U runs around a stem a whole number
+/// of times, V along it so that a texture `bark_width` metres wide keeps its proportions.
+Mesh meshStems(const Skeleton& skeleton, const TreeParameters& parameters, float bark_width);
+
+/// How blades are bent.
+struct BladeForm {
+  float fold_deg = 18;  ///< each half above the plane of the leaf
+  float curl_deg = 30;  ///< turn of the midrib from foot to tip, downwards
+};
+
+/// Leaves as one mesh, with Plant::leaves and leaf_triangles (mesh number `mesh_index`). The
+/// texture holds 2 x 2 variants of the leaf (see leaf_texture.h).
+Mesh meshLeaves(const Skeleton& skeleton, LeafShape shape, const BladeForm& form,
+                LeafForm leaf_form, std::uint32_t mesh_index, Plant& plant);
+
+}  // namespace verdure
+
+#endif  // VERDURE_PLANT_TREE_MESH_H_

@@ -134,5 +134,3 @@ BENCHMARK(baselineSplatAndFlyingEdges)
 
 }  // namespace
 }  // namespace verdure
-
-BENCHMARK_MAIN();

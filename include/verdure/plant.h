@@ -47,6 +47,8 @@ struct Mesh {
   std::vector<glm::vec3> normals;  ///< unit; always present after loading or growing
   std::vector<glm::vec2> uvs;      ///< glTF convention: (0,0) = top left of the image; may be empty
   std::vector<std::uint32_t> indices;  ///< three per triangle
+  /// Ambient coefficients of an earlier bake, [0, 1], from the file's `_AO`; empty if it has none.
+  std::vector<float> ambient;
   /// Wood only: the branch (index into Plant::branches) of each vertex; empty if unknown.
   std::vector<std::uint32_t> branch_of_vertex;
 

@@ -1,1 +1,190 @@
-int main(){}
+// The command line: parses options and calls the library, nothing else.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "app/commands.h"
+#include "base/parallel.h"
+#include "verdure/error.h"
+
+namespace {
+
+using namespace verdure;
+using namespace verdure::app;
+
+void addLoadOptions(CLI::App& command, LoadOptions& load) {
+  command
+      .add_option("--foliage", load.foliage,
+                  "Material, mesh or node that is foliage (name, * matches anything; repeatable)")
+      ->type_name("NAME");
+  command
+      .add_option("--wood", load.wood, "Material, mesh or node that is not foliage (repeatable)")
+      ->type_name("NAME");
+}
+
+void addBakeOptions(CLI::App& command, BakeParameters& bake) {
+  DensityOptions& o = bake.options;
+  const char* group = "Density field";
+  command.add_option("--rho", o.rho, "Radius of influence of a leaf, m (default: from the crown)")
+      ->group(group);
+  command
+      .add_option("--tau", o.tau,
+                  "Threshold of the surface, in kernel sums (default: from the crown)")
+      ->group(group);
+  command.add_option("--fraction", o.fraction, "Share of the leaves that is used, (0, 1]")
+      ->group(group)
+      ->capture_default_str();
+  command.add_option("--norm", bake.norm, "Norm of distances: 1, 2, inf, or any p >= 1")
+      ->group(group)
+      ->capture_default_str();
+  command.add_option("--grid", o.grid, "Cells of the surface's grid along the longest side")
+      ->group(group)
+      ->capture_default_str();
+  command
+      .add_option("--d-min", o.d_min,
+                  "Field value from which a vertex is darkest (default: from the crown)")
+      ->group(group);
+  command.add_option("--k-min", o.k_min, "Least ambient coefficient, [0, 1]")
+      ->group(group)
+      ->capture_default_str();
+  command
+      .add_option("--exponent", o.exponent,
+                  "How fast it darkens inwards: below 1 slowly, above 1 rapidly")
+      ->group(group)
+      ->capture_default_str();
+  command
+      .add_option("--normals", bake.normals,
+                  "Leaf normals: surface-point, surface-vertex, ellipsoid or keep")
+      ->group(group)
+      ->capture_default_str();
+  command.add_option("--blend", o.blend, "0 = the leaf's normals, 1 = the crown's")
+      ->group(group)
+      ->capture_default_str();
+  command.add_option("--seed", o.seed, "Seed of the random fraction")
+      ->group(group)
+      ->capture_default_str();
+  command.add_option("--max-memory", bake.max_memory_mib, "Memory for the grid, MiB")
+      ->group(group)
+      ->capture_default_str();
+}
+
+void addDeviceOptions(CLI::App& command, DeviceOptions& device) {
+  command.add_option("--device", device.device, "Part of the name of the Vulkan device to use");
+  command.add_flag("--validation", device.validation, "Check the use of Vulkan (slow)");
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"verdure: vegetation, grown, lit and rendered", "verdure"};
+  app.set_version_flag("--version", std::string("verdure ") + VERDURE_VERSION);
+  app.require_subcommand(1);
+  app.set_help_all_flag("--help-all", "Help of all commands");
+  app.option_defaults()->always_capture_default(false);
+  int threads = 0;
+  app.add_option("--threads", threads, "Threads to use (default: all cores)")
+      ->check(CLI::Range(0, 1024));
+
+  GrowCommand grow;
+  CLI::App* grow_app = app.add_subcommand("grow", "Grow a tree or shrub (Weber and Penn 1995)");
+  grow_app->add_option("-o,--output", grow.output, "File to write: .glb or .gltf");
+  grow_app->add_option("--species", grow.grow.species, "Species, see --list")
+      ->capture_default_str();
+  grow_app->add_option("--seed", grow.grow.seed, "Each seed is another tree")
+      ->capture_default_str();
+  grow_app->add_option("--set", grow.assignments, "Override a parameter, see --parameters")
+      ->type_name("PARAM=VALUE");
+  grow_app->add_option("--leaves", grow.leaves, "mesh (folded blades) or card (one quad a leaf)")
+      ->capture_default_str();
+  grow_app->add_option("--texture-size", grow.grow.texture_size, "Side of its textures, pixels")
+      ->capture_default_str();
+  grow_app->add_flag("--list", grow.list, "List the species");
+  grow_app->add_flag("--parameters", grow.parameters, "List the species' parameters");
+  grow_app->add_flag("--json", grow.json, "Print JSON");
+
+  InspectCommand inspect;
+  CLI::App* inspect_app = app.add_subcommand("inspect", "Say what is in a plant file");
+  inspect_app->add_option("file", inspect.input, "Plant: .glb .gltf .obj .fbx .dae .ply")
+      ->required();
+  addLoadOptions(*inspect_app, inspect.load);
+  inspect_app->add_flag("--json", inspect.json, "Print JSON");
+
+  BakeCommand bake;
+  CLI::App* bake_app =
+      app.add_subcommand("bake", "Bake a crown's light into its mesh (Luft et al. 2007)");
+  bake_app->add_option("file", bake.input, "Plant: .glb .gltf .obj .fbx .dae .ply")->required();
+  bake_app->add_option("-o,--output", bake.output, "File to write: .glb or .gltf")->required();
+  addLoadOptions(*bake_app, bake.load);
+  addBakeOptions(*bake_app, bake.bake);
+  bake_app->add_option("--surface", bake.surface,
+                       "Use this surface instead of the field's: .obj .ply .glb");
+  bake_app->add_option("--population", bake.population,
+                       "Bake a group in one field: JSON layout (see docs/population.md)");
+  bake_app->add_option("--report", bake.report, "Write every number of the bake as JSON");
+  bake_app->add_flag("--color1", bake.color1, "Write the ambient coefficient as COLOR_1 too");
+  bake_app->add_flag("--json", bake.json, "Print the report as JSON");
+
+  RenderCommand render;
+  CLI::App* render_app = app.add_subcommand("render", "Render a plant to a PNG");
+  render_app->add_option("file", render.input, "Plant: .glb .gltf .obj .fbx .dae .ply")->required();
+  render_app->add_option("-o,--output", render.output, "PNG to write")->required();
+  addLoadOptions(*render_app, render.load);
+  render_app->add_option("--size", render.size, "WxH, pixels")->capture_default_str();
+  render_app->add_option("--light", render.light, "standard or expressive")->capture_default_str();
+  render_app->add_option(
+      "--terms", render.terms,
+      "Only these terms: ambient,diffuse,specular,shadow,textures (default: all)");
+  render_app->add_option("--sun", render.sun, "AZIMUTH,ELEVATION, degrees (azimuth 0: +Z, 90: +X)")
+      ->capture_default_str();
+  render_app
+      ->add_option("--camera", render.camera,
+                   "auto; AZIMUTH,ELEVATION in degrees; or X,Y,Z,TARGETX,TARGETY,TARGETZ in m")
+      ->capture_default_str();
+  render_app->add_option("--fov", render.fov_deg, "Vertical field of view, degrees")
+      ->capture_default_str();
+  render_app->add_option("--background", render.background, "R,G,B in [0, 1] instead of the sky");
+  render_app->add_flag("--no-ground", render.no_ground, "Leave the ground out");
+  render_app->add_option("--shadow-map", render.shadow_map, "Side of the shadow map, pixels")
+      ->capture_default_str();
+  addDeviceOptions(*render_app, render.device);
+  addBakeOptions(*render_app, render.bake);
+  render_app->add_flag("--json", render.json, "Print times as JSON");
+
+  FiguresCommand figures;
+  CLI::App* figures_app = app.add_subcommand("figures", "Reproduce the figures of a paper");
+  figures_app->require_subcommand(1);
+  CLI::App* luft_app = figures_app->add_subcommand("luft", "Luft, Balzer, Deussen 2007: 1 to 6");
+  luft_app->add_option("-o,--output", figures.output, "Folder to write")->capture_default_str();
+  luft_app->add_option("--species", figures.species, "Species of the main tree")
+      ->capture_default_str();
+  luft_app->add_option("--size", figures.size, "WxH of each picture")->capture_default_str();
+  addDeviceOptions(*luft_app, figures.device);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
+    std::fprintf(stderr, "verdure: %s; see verdure --help\n", e.what());
+    return 2;
+  }
+  setThreadCount(threads);
+  if (*grow_app) runGrow(grow);
+  if (*inspect_app) runInspect(inspect);
+  if (*bake_app) runBake(bake);
+  if (*render_app) runRender(render);
+  if (*luft_app) runLuftFigures(figures);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const verdure::Error& e) {
+    std::fprintf(stderr, "verdure: %s\n", e.what());
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "verdure: out of memory; use a smaller plant, grid or picture\n");
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "verdure: unexpected: %s\n", e.what());
+  }
+  return 2;
+}

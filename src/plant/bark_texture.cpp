@@ -44,7 +44,7 @@ Texel lenticels(const BarkLook& look, float u, float v, std::uint32_t seed) {
   const float fine = fractalNoise(u, v, 24, 48, 3, seed + 10);
   const float wobble = 0.02f * (fractalNoise(u, v, 6, 6, 2, seed + 20) - 0.5f);
   const float dashes = marks(u, v + wobble, 7, 40, 0.5f, 0.42f, 0.3f, seed + 30);
-  const float eyes = marks(u + wobble, v + wobble, 2, 4, 0.42f, 0.3f, 0.36f, seed + 40);
+  const float eyes = marks(u + wobble, v + wobble, 3, 5, 0.3f, 0.34f, 0.26f, seed + 40);
   const float scars = marks(u, v + 2 * wobble, 3, 7, 0.3f, 0.55f, 0.16f, seed + 50);
   const float dark = std::max({0.72f * dashes, eyes * (0.8f + 0.2f * fine), 0.8f * scars});
   glm::vec3 color = glm::mix(look.color, look.tint, ramp(broad, 0.4f, 0.75f));
@@ -60,7 +60,7 @@ Texel paper(const BarkLook& look, float u, float v, std::uint32_t seed) {
   const float lines = marks(u, v + wobble, 4, 44, 0.42f, 0.48f, 0.2f, seed + 30);
   const float longer = marks(u, v + wobble, 2, 22, 0.3f, 0.5f, 0.13f, seed + 60);
   const float ragged = 0.16f * (fractalNoise(u, v, 14, 14, 3, seed + 40) - 0.5f);
-  const float patches = marks(u + ragged, v + 0.7f * ragged, 2, 3, 0.45f, 0.34f, 0.3f, seed + 50);
+  const float patches = marks(u + ragged, v + 0.7f * ragged, 3, 4, 0.4f, 0.5f, 0.3f, seed + 50);
   const float dark = std::max({0.62f * lines, 0.8f * longer, patches});
   glm::vec3 color = glm::mix(look.color, look.tint, 0.75f * ramp(broad, 0.5f, 0.85f));
   color *= 0.92f + 0.12f * strips;
@@ -71,19 +71,23 @@ Texel paper(const BarkLook& look, float u, float v, std::uint32_t seed) {
 }
 
 Texel furrows(const BarkLook& look, float u, float v, std::uint32_t seed) {
-  // Ridges that part and meet: cells stretched along the stem, their borders the furrows.
-  const float warp_u = 0.085f * (fractalNoise(u, v, 4, 3, 3, seed) - 0.5f);
-  const float warp_v = 0.06f * (fractalNoise(u, v, 5, 4, 2, seed + 5) - 0.5f);
-  const Cell cell = cellNoise(u + warp_u, v + warp_v, 9, 3, seed + 10);
-  const float fine = fractalNoise(u + 0.5f * warp_u, v, 30, 12, 4, seed + 20);
-  const float crack = fractalNoise(u, v, 14, 40, 3, seed + 30);
-  const float ridge = ramp(cell.border + 0.22f * (fine - 0.5f), 0.02f, 0.36f);
-  const float height = std::clamp(
-      0.8f * ridge + 0.3f * (fine - 0.35f) - 0.18f * ridge * ramp(crack, 0.62f, 0.75f), 0.0f, 1.0f);
-  const float lichen = ramp(fractalNoise(u, v, 4, 4, 4, seed + 40), 0.56f, 0.72f) * ridge;
-  glm::vec3 color = glm::mix(look.deep, look.color, ramp(height, 0.05f, 0.75f));
-  color = glm::mix(color, look.tint, 0.55f * lichen);
-  color *= 0.82f + 0.3f * fine + 0.08f * (cell.value - 0.5f);
+  // Ridges that part and meet: the furrows are zero lines of noise stretched along the stem.
+  const float warp_u = 0.07f * (fractalNoise(u, v, 5, 4, 3, seed) - 0.5f);
+  const float warp_v = 0.05f * (fractalNoise(u, v, 6, 5, 2, seed + 5) - 0.5f);
+  const auto lines = [&](int nu, int nv, std::uint32_t s) {
+    return std::abs(2 * valueNoise(u + warp_u, v + warp_v, nu, nv, s) - 1);
+  };
+  const float broad = std::min(lines(11, 3, seed + 10), 0.12f + lines(15, 5, seed + 11));
+  const float fine = fractalNoise(u + 0.5f * warp_u, v, 32, 12, 4, seed + 20);
+  const float crack = fractalNoise(u + warp_u, v + warp_v, 12, 26, 3, seed + 30);
+  const float ridge = ramp(broad + 0.2f * (fine - 0.5f), 0.0f, 0.34f);
+  const float split = ramp(crack, 0.6f, 0.7f);
+  const float height =
+      std::clamp(0.75f * ridge * (1 - 0.4f * split) + 0.4f * (fine - 0.35f), 0.0f, 1.0f);
+  const float lichen = ramp(fractalNoise(u, v, 4, 4, 4, seed + 40), 0.54f, 0.72f) * ridge;
+  glm::vec3 color = glm::mix(look.deep, look.color, ramp(height, 0.0f, 0.7f));
+  color = glm::mix(color, look.tint, 0.6f * lichen);
+  color *= 0.8f + 0.36f * fine;
   return {height, color};
 }
 
@@ -104,12 +108,12 @@ Texel blocks(const BarkLook& look, float u, float v, std::uint32_t seed) {
 Texel plates(const BarkLook& look, float u, float v, std::uint32_t seed) {
   const float warp_u = 0.07f * (fractalNoise(u, v, 5, 5, 3, seed) - 0.5f);
   const float warp_v = 0.07f * (fractalNoise(u, v, 5, 5, 3, seed + 5) - 0.5f);
-  const Cell cell = cellNoise(u + warp_u, v + warp_v, 5, 3, seed + 10);
+  const Cell cell = cellNoise(u + warp_u, v + warp_v, 6, 3, seed + 10);
   // Flakes: thin layers with ragged steps inside each plate.
   const float layers = fractalNoise(u + warp_u, v + warp_v, 9, 9, 3, seed + 20) * 5 + cell.value;
   const float step = layers - std::floor(layers);
   const float fine = fractalNoise(u, v, 36, 36, 3, seed + 30);
-  const float plate = ramp(cell.border + 0.1f * (fine - 0.5f), 0.03f, 0.2f);
+  const float plate = ramp(cell.border + 0.14f * (fine - 0.5f), 0.0f, 0.17f);
   const float height = std::clamp(
       plate * (0.55f + 0.12f * std::floor(layers) / 5 + 0.16f * ramp(step, 0.0f, 0.25f)) +
           0.12f * fine,
@@ -117,7 +121,7 @@ Texel plates(const BarkLook& look, float u, float v, std::uint32_t seed) {
   glm::vec3 flake =
       glm::mix(look.color, look.tint,
                ramp(0.55f * cell.value + 0.45f * (std::floor(layers) / 5), 0.3f, 0.75f));
-  flake *= 0.86f + 0.16f * ramp(step, 0.0f, 0.3f);
+  flake *= 0.93f + 0.08f * ramp(step, 0.0f, 0.5f);
   glm::vec3 color = glm::mix(look.deep, flake, plate);
   color *= 0.86f + 0.28f * fine;
   return {height, color};

@@ -7,7 +7,7 @@ namespace verdure {
 namespace {
 
 constexpr float kPi = 3.14159265f;
-constexpr float kStalkHalfWidth = 0.018f;
+constexpr float kStalkHalfWidth = 0.013f;
 constexpr int kSteps = 120;
 
 float ramp(float x, float low, float high) {
@@ -34,14 +34,15 @@ float halfWidth(LeafShape shape, float s) {
     case LeafShape::kRound: {
       const float c = 2 * std::pow(s, 0.82f) - 1;
       const float round = std::sqrt(std::max(0.0f, 1 - c * c));
-      return (0.45f + 0.03f * tooth(s, 15)) * round * (1 - 0.3f * ramp(s, 0.88f, 1.0f));
+      return (0.45f + 0.03f * tooth(s, 15)) * round * (1 - 0.55f * ramp(s, 0.86f, 0.99f));
     }
     case LeafShape::kLanceolate:
       return (0.46f + 0.02f * tooth(s, 26)) * std::pow(arch(s, 0.72f), 0.95f);
     case LeafShape::kTriangular: {
-      const float base = std::pow(std::min(s / 0.2f, 1.0f), 0.55f);
-      const float side = s < 0.2f ? 1.0f : std::pow(std::max(1 - (s - 0.2f) / 0.8f, 0.0f), 1.15f);
-      return base * side * (0.43f + 0.035f * tooth(s, 9) + 0.02f * tooth(s, 27));
+      // s^a (1 - s)^b, whose maximum is at a / (a + b).
+      const float a = 0.5f, b = 1.25f, peak = a / (a + b);
+      const float form = std::pow(s / peak, a) * std::pow((1 - s) / (1 - peak), b);
+      return form * (0.42f + 0.035f * tooth(s, 10) + 0.02f * tooth(s, 30));
     }
     default:
       return 0.48f * std::pow(arch(s, 0.95f), 0.62f);
@@ -51,13 +52,14 @@ float halfWidth(LeafShape shape, float s) {
 /// Right-hand half of black oak's outline, as (half width, height): lobes with a main point and a
 /// side point each, rounded sinuses between them.
 const glm::vec2 kOakHalf[] = {
-    {0.05f, 0.115f},  {0.13f, 0.15f},  {0.215f, 0.17f}, {0.205f, 0.2f},  {0.13f, 0.235f},
-    {0.085f, 0.265f}, {0.09f, 0.295f}, {0.17f, 0.315f}, {0.3f, 0.345f},  {0.42f, 0.40f},
-    {0.37f, 0.415f},  {0.385f, 0.46f}, {0.29f, 0.45f},  {0.18f, 0.465f}, {0.12f, 0.49f},
-    {0.125f, 0.52f},  {0.22f, 0.555f}, {0.36f, 0.60f},  {0.48f, 0.675f}, {0.42f, 0.685f},
-    {0.415f, 0.735f}, {0.30f, 0.715f}, {0.19f, 0.705f}, {0.145f, 0.72f}, {0.155f, 0.75f},
-    {0.225f, 0.79f},  {0.31f, 0.865f}, {0.24f, 0.865f}, {0.20f, 0.895f}, {0.12f, 0.87f},
-    {0.10f, 0.885f},  {0.085f, 0.93f}, {0.03f, 0.955f}};
+    {0.06f, 0.115f},  {0.12f, 0.13f},   {0.20f, 0.15f},   {0.26f, 0.15f},   {0.235f, 0.185f},
+    {0.17f, 0.225f},  {0.15f, 0.25f},   {0.17f, 0.275f},  {0.26f, 0.285f},  {0.40f, 0.305f},
+    {0.375f, 0.335f}, {0.455f, 0.38f},  {0.385f, 0.40f},  {0.385f, 0.44f},  {0.30f, 0.42f},
+    {0.20f, 0.44f},   {0.165f, 0.465f}, {0.185f, 0.495f}, {0.29f, 0.515f},  {0.42f, 0.56f},
+    {0.39f, 0.585f},  {0.48f, 0.64f},   {0.40f, 0.65f},   {0.385f, 0.70f},  {0.28f, 0.665f},
+    {0.18f, 0.68f},   {0.15f, 0.70f},   {0.165f, 0.73f},  {0.235f, 0.765f}, {0.31f, 0.825f},
+    {0.265f, 0.83f},  {0.28f, 0.885f},  {0.20f, 0.865f},  {0.13f, 0.85f},   {0.10f, 0.87f},
+    {0.11f, 0.92f},   {0.05f, 0.93f}};
 
 struct Finger {
   float angle_deg, length;
@@ -146,29 +148,32 @@ std::vector<glm::vec2> leafOutline(LeafShape shape) {
 
 std::vector<glm::vec2> leafHull(LeafShape shape) {
   if (shape == LeafShape::kNeedles) return {{0.5f, 0.0f}, {0.5f, 1.0f}};
+  // The smallest polyline (0, 0), (a, low), (b, high), (0, 1) that keeps the outline inside, by
+  // trial; what the limit of 0.5 cuts off counts twentyfold.
   const std::vector<glm::vec2> outline = leafOutline(shape);
-  float low = 0.28f, high = 0.72f;
-  if (shape == LeafShape::kLanceolate) low = 0.24f, high = 0.62f;
-  if (shape == LeafShape::kTriangular) low = 0.2f, high = 0.5f;
-  if (shape == LeafShape::kRound) low = 0.25f, high = 0.8f;
-  if (shape == LeafShape::kPalmate) low = 0.2f, high = 0.68f;
-  if (shape == LeafShape::kLobed) low = 0.17f, high = 0.76f;
-  // The narrowest polyline (0, 0), (a, low), (b, high), (0, 1) that keeps the outline inside: the
-  // bounds of the two ends first, then both raised by what the middle lacks.
-  float a = 0.02f, b = 0.02f;
-  for (const glm::vec2& p : outline) {
-    if (p.y > 0.04f && p.y <= low) a = std::max(a, p.x * low / p.y);
-    if (p.y >= high && p.y < 0.99f) b = std::max(b, p.x * (1 - high) / (1 - p.y));
-  }
-  a = std::min(a, 0.5f);
-  b = std::min(b, 0.5f);
-  float lack = 0;
-  for (const glm::vec2& p : outline)
-    if (p.y > low && p.y < high) {
-      const float t = (p.y - low) / (high - low);
-      lack = std::max(lack, p.x - ((1 - t) * a + t * b));
+  std::vector<glm::vec2> best;
+  float least = 1e9f;
+  for (float low = 0.12f; low < 0.46f; low += 0.02f)
+    for (float high = low + 0.14f; high < 0.93f; high += 0.02f) {
+      // The bounds of the two ends first, then both raised by what the middle lacks.
+      float a = 0.02f, b = 0.02f, lack = 0, cut = 0;
+      for (const glm::vec2& p : outline) {
+        if (p.y > 0.04f && p.y <= low) a = std::max(a, p.x * low / p.y);
+        if (p.y >= high && p.y < 0.985f) b = std::max(b, p.x * (1 - high) / (1 - p.y));
+      }
+      for (const glm::vec2& p : outline)
+        if (p.y > low && p.y < high)
+          lack = std::max(lack, p.x - glm::mix(a, b, (p.y - low) / (high - low)));
+      cut = std::max(a + lack - 0.5f, 0.0f) + std::max(b + lack - 0.5f, 0.0f);
+      a = std::min(a + lack, 0.5f);
+      b = std::min(b + lack, 0.5f);
+      const float area = a * low + (a + b) * (high - low) + b * (1 - high) + 20 * cut;
+      if (area < least) {
+        least = area;
+        best = {{a, low}, {b, high}};
+      }
     }
-  return {{std::min(a + lack, 0.5f), low}, {std::min(b + lack, 0.5f), high}};
+  return best;
 }
 
 }  // namespace verdure

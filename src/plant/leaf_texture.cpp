@@ -100,12 +100,14 @@ glm::vec2 veinsAt(LeafShape shape, float x, float y, float leaf_scale_x) {
     }
     return {main, side};
   }
-  const float main = line(std::abs(x), y < kLeafStalk ? 0.02f : 0.016f * (1.15f - y));
+  // Narrow leaves have finer veins.
+  const float fine = std::min(1.0f, 0.3f + 0.8f * leaf_scale_x);
+  const float main = line(std::abs(x), fine * (y < kLeafStalk ? 0.02f : 0.016f * (1.15f - y)));
   const float root = y - std::abs(x) * slope - veins.bend * x * x;  // where its vein leaves
   const float phase = (root - kLeafStalk) / veins.spacing + (x > 0 ? 0.5f : 0.0f);
   const float first = x > 0 ? 0.4f : -0.1f;
   float side = line(std::abs(phase - std::round(phase)) * veins.spacing * sine,
-                    0.0085f * (1.1f - ramp(std::abs(x), 0.0f, 0.5f)));
+                    fine * 0.0085f * (1.1f - ramp(std::abs(x), 0.0f, 0.5f)));
   if (std::round(phase) < first || y < kLeafStalk || root > 0.97f) side = 0;
   return {main, side};
 }
@@ -147,14 +149,14 @@ std::vector<Needle> makeNeedles(int size, std::uint32_t seed) {
     needle.shoot = shoot;
     needles.push_back(needle);
   };
-  add({0, 0}, {0, 0.72f}, 0.013f, 0.01f, 1.0f, true);
+  add({0, 0}, {0, 0.58f}, 0.013f, 0.01f, 1.0f, true);
   const int count = 46;
   for (int i = 0; i < count; ++i) {
     const float t = (static_cast<float>(i) + random.uniform()) / static_cast<float>(count);
-    const float root = 0.03f + 0.69f * t;
+    const float root = 0.03f + 0.55f * t;
     for (const float side : {-1.0f, 1.0f}) {
       // Needles lean forward, more so at the tip of the shoot.
-      const float angle = (0.95f - 0.72f * t * t + random.vary(0.2f)) * side;
+      const float angle = (0.95f - 0.8f * t * t + random.vary(0.2f)) * side;
       const float length =
           std::min(random.uniform(0.36f, 0.47f), (0.985f - root) / std::max(std::cos(angle), 0.1f));
       const glm::vec2 foot(0, root);

@@ -17,7 +17,7 @@ Species quakingAspen() {
   Species s;
   s.info = {"quaking-aspen", "Quaking aspen (Populus tremuloides)", kPaper};
   // Deviates: ScaleV 1.5 (3); BaseSize 0.3 (0.4), as the published figure shows; smoother stems
-  // (CurveRes 10, 7, 4 for 3, 5, 3); 46 leaves of 0.095 m on a twig (25 of 0.17 m).
+  // (CurveRes 10, 7, 4 for 3, 5, 3); 42 leaves of 0.115 m on a twig (25 of 0.17 m).
   setParameters(s.parameters,
                 "Shape=7 BaseSize=0.3 Scale=13 ScaleV=1.5 Levels=3 Ratio=0.015 RatioPower=1.2 "
                 "Lobes=5 LobeDepth=0.07 Flare=0.6 "
@@ -27,12 +27,12 @@ Species quakingAspen() {
                 "2DownAngle=45 2DownAngleV=10 2Rotate=140 2Branches=30 2Length=0.6 2Taper=1 "
                 "2CurveRes=4 2Curve=-40 2CurveV=75 "
                 "3DownAngle=45 3DownAngleV=10 3Rotate=77 "
-                "Leaves=46 LeafShape=1 LeafScale=0.095 LeafScaleX=0.9 AttractionUp=0.5 "
+                "Leaves=42 LeafShape=1 LeafScale=0.115 LeafScaleX=0.9 AttractionUp=0.5 "
                 "PruneWidth=0.5 PruneWidthPeak=0.5 PrunePowerLow=0.5 PrunePowerHigh=0.5");
   s.bark = {BarkKind::kLenticels,
             {0.80f, 0.79f, 0.70f},
             {0.17f, 0.15f, 0.13f},
-            {0.70f, 0.70f, 0.58f},
+            {0.73f, 0.71f, 0.61f},
             0.8f,
             0.9f};
   s.leaf = {{0.37f, 0.50f, 0.20f}, {0.50f, 0.58f, 0.22f}, {0.62f, 0.68f, 0.38f}};
@@ -44,7 +44,7 @@ Species blackTupelo() {
   Species s;
   s.info = {"black-tupelo", "Black tupelo (Nyssa sylvatica)", kPaper};
   // Deviates: Scale 18, ScaleV 2 (23, 5): a middle-aged tree, whose crown the leaves can fill;
-  // 2Branches 18 (25), 3Branches 7 (12); 3CurveRes 2 (1); 10 leaves of 0.14 m (6 of 0.3 m).
+  // 2Branches 18 (25), 3Branches 10 (12); 9 leaves of 0.19 m (6 of 0.3 m).
   setParameters(s.parameters,
                 "Shape=4 BaseSize=0.2 Scale=18 ScaleV=2 Levels=4 Ratio=0.015 RatioPower=1.3 "
                 "Lobes=3 LobeDepth=0.1 Flare=1 "
@@ -53,9 +53,9 @@ Species blackTupelo() {
                 "1Taper=1 1CurveRes=10 1CurveV=90 "
                 "2DownAngle=30 2DownAngleV=10 2Rotate=140 2Branches=18 2Length=0.6 2LengthV=0.1 "
                 "2Taper=1 2CurveRes=6 2Curve=-10 2CurveV=150 "
-                "3DownAngle=45 3DownAngleV=10 3Rotate=140 3Branches=7 3Length=0.4 3Taper=1 "
-                "3CurveRes=2 "
-                "Leaves=10 LeafShape=0 LeafScale=0.14 LeafScaleX=0.5 AttractionUp=0.5 "
+                "3DownAngle=45 3DownAngleV=10 3Rotate=140 3Branches=10 3Length=0.4 3Taper=1 "
+                "3CurveRes=1 "
+                "Leaves=9 LeafShape=0 LeafScale=0.19 LeafScaleX=0.5 AttractionUp=0.5 "
                 "PruneWidth=0.5 PruneWidthPeak=0.5 PrunePowerLow=0.5 PrunePowerHigh=0.5");
   s.bark = {BarkKind::kBlocks,
             {0.46f, 0.41f, 0.36f},
@@ -74,21 +74,22 @@ Species weepingWillow() {
   // Deviates: ScaleV 1.5 (5); RatioPower 1.6 (2), whips would be hairs; 1Branches 13 (25),
   // 2Branches 11 (10), 3Branches 9 (300) with 3Length 0.75 (0.1): few long whips instead of
   // many short ones; 2Length 0.75 (1.5); 40 leaves of 0.14 m (15 of 0.12 m).
-  setParameters(s.parameters,
-                "Shape=3 BaseSize=0.05 Scale=14 ScaleV=1.5 Levels=4 Ratio=0.03 RatioPower=1.6 "
-                "Lobes=9 LobeDepth=0.03 Flare=0.75 "
-                "0Length=0.8 0Taper=1 0BaseSplits=2 0SegSplits=0.1 0SplitAngle=12 0CurveRes=8 "
-                "0CurveBack=20 0CurveV=120 "
-                "1DownAngle=20 1DownAngleV=10 1Rotate=-120 1RotateV=30 1Branches=13 1Length=0.5 "
-                "1LengthV=0.1 1Taper=1 1SegSplits=0.1 1SplitAngle=30 1SplitAngleV=10 1CurveRes=12 "
-                "1Curve=40 1CurveBack=80 1CurveV=90 "
-                "2DownAngle=30 2DownAngleV=10 2Rotate=-120 2RotateV=30 2Branches=11 2Length=0.75 "
-                "2Taper=1 2SegSplits=0.05 2SplitAngle=45 2SplitAngleV=20 2CurveRes=10 "
-                "3DownAngle=20 3DownAngleV=10 3Rotate=140 3Branches=9 3Length=0.75 3Taper=1 "
-                "3CurveRes=7 3CurveV=40 "
-                "Leaves=40 LeafShape=2 LeafScale=0.14 LeafScaleX=0.2 LeafBend=0.1 AttractionUp=-3 "
-                "PruneRatio=1 PruneWidth=0.4 PruneWidthPeak=0.6 PrunePowerLow=0.001 "
-                "PrunePowerHigh=0.5");
+  setParameters(
+      s.parameters,
+      "Shape=3 BaseSize=0.05 Scale=14 ScaleV=1.5 Levels=4 Ratio=0.025 RatioPower=1.8 "
+      "Lobes=9 LobeDepth=0.03 Flare=0.75 "
+      "0Length=0.8 0Taper=1 0BaseSplits=2 0SplitAngle=22 0CurveRes=8 "
+      "0CurveBack=20 0CurveV=120 "
+      "1DownAngle=20 1DownAngleV=10 1Rotate=-120 1RotateV=30 1Branches=12 1Length=0.5 "
+      "1LengthV=0.1 1Taper=1 1SegSplits=0.05 1SplitAngle=30 1SplitAngleV=10 1CurveRes=12 "
+      "1Curve=40 1CurveBack=80 1CurveV=90 "
+      "2DownAngle=30 2DownAngleV=10 2Rotate=-120 2RotateV=30 2Branches=9 2Length=0.75 "
+      "2Taper=1 2SegSplits=0.05 2SplitAngle=45 2SplitAngleV=20 2CurveRes=8 2CurveV=60 "
+      "3DownAngle=20 3DownAngleV=10 3Rotate=140 3Branches=6 3Length=0.7 3LengthV=0.25 3Taper=1 "
+      "3CurveRes=5 3CurveV=40 "
+      "Leaves=22 LeafShape=2 LeafScale=0.19 LeafScaleX=0.24 LeafBend=0.1 AttractionUp=-2 "
+      "PruneRatio=1 PruneWidth=0.4 PruneWidthPeak=0.6 PrunePowerLow=0.001 "
+      "PrunePowerHigh=0.5");
   s.bark = {BarkKind::kFurrows,
             {0.47f, 0.42f, 0.34f},
             {0.16f, 0.13f, 0.10f},
@@ -107,17 +108,17 @@ Species blackOak() {
   // (0.2), 1Branches 16 (40), 2Branches 45 (120): splits multiply the stems, the published numbers
   // give a million leaves; 2CurveV 60 (-30, a helix); 25 leaves of 0.13 m (25 of 0.12 m).
   setParameters(s.parameters,
-                "Shape=2 BaseSize=0.12 Scale=11 ScaleV=1.5 Levels=3 Ratio=0.018 RatioPower=1.3 "
+                "Shape=2 BaseSize=0.2 Scale=11 ScaleV=1.5 Levels=3 Ratio=0.018 RatioPower=1.3 "
                 "Lobes=5 LobeDepth=0.1 Flare=1.2 "
-                "0Length=1 0Taper=0.95 0BaseSplits=2 0SegSplits=0.2 0SplitAngle=20 0CurveRes=8 "
+                "0Length=1 0Taper=0.95 0BaseSplits=2 0SplitAngle=20 0CurveRes=8 "
                 "0CurveV=90 "
-                "1DownAngle=30 1DownAngleV=-30 1Rotate=80 1Branches=16 1Length=0.8 1LengthV=0.1 "
-                "1Taper=1 1SegSplits=0.1 1SplitAngle=10 1SplitAngleV=10 1CurveRes=10 1Curve=40 "
-                "1CurveBack=-70 1CurveV=150 "
-                "2DownAngle=45 2DownAngleV=10 2Rotate=140 2Branches=45 2Length=0.2 2LengthV=0.05 "
+                "1DownAngle=30 1DownAngleV=-30 1Rotate=80 1Branches=15 1Length=0.55 1LengthV=0.1 "
+                "1Taper=1 1SegSplits=0.1 1SplitAngle=10 1SplitAngleV=10 1CurveRes=10 1Curve=28 "
+                "1CurveBack=-60 1CurveV=90 "
+                "2DownAngle=45 2DownAngleV=10 2Rotate=140 2Branches=44 2Length=0.28 2LengthV=0.05 "
                 "2Taper=1 2SegSplits=0.1 2SplitAngle=10 2SplitAngleV=10 2CurveRes=4 2CurveV=60 "
                 "3DownAngle=45 3DownAngleV=10 3Rotate=140 3Length=0.4 "
-                "Leaves=25 LeafShape=3 LeafScale=0.13 LeafScaleX=0.66 AttractionUp=0.8 "
+                "Leaves=21 LeafShape=3 LeafScale=0.17 LeafScaleX=0.66 AttractionUp=0.6 "
                 "PruneWidth=0.5 PruneWidthPeak=0.5 PrunePowerLow=0.5 PrunePowerHigh=0.5");
   s.bark = {BarkKind::kFurrows,
             {0.40f, 0.36f, 0.32f},
@@ -136,24 +137,25 @@ Species japaneseMaple() {
   setParameters(s.parameters,
                 "Shape=2 BaseSize=0.15 Scale=5 ScaleV=0.5 Levels=4 Ratio=0.022 RatioPower=1.3 "
                 "Lobes=4 LobeDepth=0.06 Flare=0.5 "
-                "0Length=0.8 0Taper=1 0BaseSplits=3 0SplitAngle=32 0SplitAngleV=6 0CurveRes=8 "
-                "0Curve=0 0CurveV=120 "
-                "1DownAngle=50 1DownAngleV=12 1Rotate=140 1RotateV=20 1Branches=9 1Length=0.5 "
+                "0Length=0.8 0Taper=1 0BaseSplits=3 0SplitAngle=38 0SplitAngleV=6 0CurveRes=8 "
+                "0Curve=0 0CurveV=90 "
+                "1DownAngle=50 1DownAngleV=12 1Rotate=140 1RotateV=20 1Branches=11 1Length=0.5 "
                 "1LengthV=0.08 1Taper=1 1SegSplits=0.15 1SplitAngle=35 1SplitAngleV=8 1CurveRes=8 "
                 "1Curve=35 1CurveV=120 "
                 "2DownAngle=50 2DownAngleV=12 2Rotate=-150 2RotateV=25 2Branches=13 2Length=0.45 "
                 "2LengthV=0.08 2Taper=1 2CurveRes=6 2Curve=-10 2CurveV=90 "
                 "3DownAngle=48 3DownAngleV=12 3Rotate=-150 3RotateV=25 3Branches=6 3Length=0.4 "
                 "3LengthV=0.05 3Taper=1 3CurveRes=3 3CurveV=60 "
-                "Leaves=11 LeafShape=4 LeafScale=0.085 LeafScaleX=1.05 LeafBend=0.75 "
-                "AttractionUp=-0.15");
+                "Leaves=18 LeafShape=4 LeafScale=0.09 LeafScaleX=1.05 LeafBend=0.75 "
+                "AttractionUp=-0.15 PruneRatio=1 PruneWidth=0.52 PruneWidthPeak=0.35 "
+                "PrunePowerLow=0.3 PrunePowerHigh=0.6");
   s.bark = {BarkKind::kSmooth,
             {0.46f, 0.43f, 0.38f},
             {0.29f, 0.26f, 0.23f},
             {0.50f, 0.50f, 0.43f},
             0.9f,
             0.35f};
-  s.leaf = {{0.50f, 0.10f, 0.09f}, {0.66f, 0.20f, 0.10f}, {0.62f, 0.26f, 0.18f}};
+  s.leaf = {{0.45f, 0.10f, 0.10f}, {0.60f, 0.19f, 0.11f}, {0.62f, 0.26f, 0.18f}};
   s.blade = {8, 40};
   return s;
 }
@@ -173,14 +175,14 @@ Species scotsPine() {
                 "2LengthV=0.08 2Taper=1 2CurveRes=5 2Curve=-30 2CurveV=90 "
                 "3DownAngle=42 3DownAngleV=12 3Rotate=140 3RotateV=20 3Branches=6 3Length=0.42 "
                 "3LengthV=0.08 3Taper=1 3CurveRes=3 3Curve=-30 3CurveV=40 "
-                "Leaves=8 LeafShape=7 LeafScale=0.17 LeafScaleX=0.72 LeafBend=0 AttractionUp=0.9");
+                "Leaves=9 LeafShape=7 LeafScale=0.17 LeafScaleX=0.72 LeafBend=0 AttractionUp=0.9");
   s.bark = {BarkKind::kPlates,
             {0.60f, 0.37f, 0.23f},
             {0.19f, 0.11f, 0.08f},
             {0.66f, 0.49f, 0.36f},
             1.8f,
             0.7f};
-  s.leaf = {{0.21f, 0.34f, 0.20f}, {0.31f, 0.41f, 0.19f}, {0.42f, 0.30f, 0.18f}};
+  s.leaf = {{0.27f, 0.41f, 0.24f}, {0.38f, 0.48f, 0.24f}, {0.42f, 0.30f, 0.18f}};
   s.alpha_cutoff = 0.4f;
   return s;
 }
@@ -196,10 +198,10 @@ Species silverBirch() {
                 "1LengthV=0.05 1Taper=1 1CurveRes=9 1Curve=30 1CurveV=70 "
                 "2DownAngle=42 2DownAngleV=12 2Rotate=140 2RotateV=30 2Branches=18 2Length=0.42 "
                 "2LengthV=0.1 2Taper=1 2CurveRes=7 2Curve=20 2CurveV=60 "
-                "3DownAngle=40 3DownAngleV=12 3Rotate=140 3RotateV=20 3Branches=6 3Length=0.5 "
+                "3DownAngle=40 3DownAngleV=12 3Rotate=140 3RotateV=20 3Branches=7 3Length=0.5 "
                 "3LengthV=0.08 3Taper=1 3CurveRes=4 3CurveV=30 "
-                "Leaves=13 LeafShape=5 LeafScale=0.085 LeafScaleX=0.8 LeafBend=0.2 "
-                "AttractionUp=-1.3");
+                "Leaves=21 LeafShape=5 LeafScale=0.09 LeafScaleX=0.8 LeafBend=0.3 "
+                "AttractionUp=-0.6");
   s.bark = {BarkKind::kPaper,
             {0.90f, 0.89f, 0.86f},
             {0.12f, 0.11f, 0.10f},
@@ -217,15 +219,15 @@ Species hedge() {
   setParameters(s.parameters,
                 "Shape=3 BaseSize=0.04 Scale=1.7 ScaleV=0.1 Levels=4 Ratio=0.012 RatioPower=1.1 "
                 "Flare=0.2 "
-                "0Length=1 0Taper=1 0BaseSplits=8 0SplitAngle=34 0SplitAngleV=12 0CurveRes=12 "
+                "0Length=0.85 0Taper=1 0BaseSplits=10 0SplitAngle=42 0SplitAngleV=12 0CurveRes=24 "
                 "0CurveV=90 "
-                "1DownAngle=48 1DownAngleV=14 1Rotate=140 1RotateV=30 1Branches=11 1Length=0.42 "
+                "1DownAngle=48 1DownAngleV=14 1Rotate=140 1RotateV=30 1Branches=11 1Length=0.5 "
                 "1LengthV=0.1 1Taper=1 1CurveRes=6 1Curve=-30 1CurveV=80 "
                 "2DownAngle=50 2DownAngleV=14 2Rotate=140 2RotateV=30 2Branches=9 2Length=0.45 "
                 "2LengthV=0.1 2Taper=1 2CurveRes=4 2Curve=-20 2CurveV=60 "
                 "3DownAngle=50 3DownAngleV=10 3Rotate=140 3RotateV=20 3Branches=5 3Length=0.45 "
                 "3LengthV=0.05 3Taper=1 3CurveRes=2 3CurveV=30 "
-                "Leaves=12 LeafShape=6 LeafScale=0.045 LeafScaleX=0.5 LeafBend=0.3 "
+                "Leaves=15 LeafShape=6 LeafScale=0.045 LeafScaleX=0.5 LeafBend=0.3 "
                 "AttractionUp=0.8 "
                 "PruneRatio=1 PruneWidth=0.48 PruneWidthPeak=0.5 PrunePowerLow=0.12 "
                 "PrunePowerHigh=0.22");

@@ -141,16 +141,17 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// Levenshtein's distance.
+/// Levenshtein's distance, with 2 for a letter too many or too few and 3 for a wrong one: letters
+/// are forgotten more often than replaced.
 std::size_t editDistance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = 2 * j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
     std::size_t diagonal = row[0];
-    row[0] = i;
+    row[0] = 2 * i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
       const std::size_t above = row[j];
-      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      row[j] = std::min({above + 2, row[j - 1] + 2, diagonal + (a[i - 1] == b[j - 1] ? 0 : 3)});
       diagonal = above;
     }
   }

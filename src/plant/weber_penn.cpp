@@ -13,6 +13,8 @@ namespace {
 
 constexpr float kPi = 3.14159265358979f;
 const glm::vec3 kUp(0, 1, 0);
+/// Radii stay above this, m, so that no ring of a stem's mesh shrinks to a point.
+constexpr float kThinnest = 1e-5f;
 
 float radiansOf(float degrees) {
   return degrees * (kPi / 180.0f);
@@ -59,7 +61,7 @@ struct Tree {
     const float z = std::clamp(along / stem.length, 0.0f, 1.0f);
     float r = taperedRadius(p.at(stem.level).taper, z, stem.radius, stem.length);
     if (stem.level == 0) r *= trunk_scale * flareFactor(p.flare, z);
-    return r;
+    return std::max(r, kThinnest);
   }
   /// Length of a stem at the foot that carries no children, m.
   float bareLength(const Stem& stem) const { return stem.level == 0 ? base_length : 0.0f; }

@@ -1,0 +1,99 @@
+#ifndef VERDURE_APP_COMMANDS_H_
+#define VERDURE_APP_COMMANDS_H_
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "verdure/density.h"
+#include "verdure/grow.h"
+#include "verdure/plant_io.h"
+#include "verdure/render.h"
+
+/// One function for each subcommand: parsed options in, files and lines out. All throw Error.
+namespace verdure::app {
+
+struct GrowCommand {
+  GrowOptions grow;
+  std::string leaves = "mesh";
+  std::vector<std::string> assignments;  ///< "Param=value"
+  std::string output;
+  bool list = false;
+  bool parameters = false;
+  bool json = false;
+};
+void runGrow(GrowCommand command);
+
+struct InspectCommand {
+  std::string input;
+  LoadOptions load;
+  bool json = false;
+};
+void runInspect(const InspectCommand& command);
+
+/// The parameters of the bake as the command line gives them; `options` reads them.
+struct BakeParameters {
+  DensityOptions options;
+  std::string norm = "2";
+  std::string normals = "surface-point";
+  double max_memory_mib = 4096;
+
+  /// Throws Error for an unknown norm or kind of normals.
+  DensityOptions checked() const;
+};
+
+struct BakeCommand {
+  std::string input;
+  std::string output;
+  LoadOptions load;
+  BakeParameters bake;
+  std::string surface;     ///< file that replaces the extracted surface
+  std::string population;  ///< layout file
+  std::string report;
+  bool color1 = false;
+  bool json = false;
+};
+void runBake(const BakeCommand& command);
+
+struct RenderCommand {
+  std::string input;
+  std::string output;
+  LoadOptions load;
+  BakeParameters bake;
+  std::string size = "960x720";
+  std::string light = "expressive";
+  std::string terms;
+  std::string sun = "130,45";
+  std::string camera = "auto";
+  double fov_deg = 34.0;
+  std::string background;
+  bool no_ground = false;
+  int shadow_map = 2048;
+  DeviceOptions device;
+  bool json = false;
+};
+void runRender(const RenderCommand& command);
+
+struct FiguresCommand {
+  std::string output = "figures";
+  std::string species = "black-oak";
+  std::string size = "640x640";
+  DeviceOptions device;
+};
+void runLuftFigures(const FiguresCommand& command);
+
+// Shared by the commands.
+
+/// "960x720" to two numbers. Throws Error.
+std::pair<int, int> parseSize(const std::string& text);
+/// Comma-separated numbers; throws Error unless there are `count` of them (0: any).
+std::vector<float> parseNumbers(const std::string& option, const std::string& text,
+                                std::size_t count);
+/// The light that a file brought along in `_AO` and NORMAL, if it has any.
+std::optional<CrownLight> lightOfFile(const Plant& plant);
+std::string jsonOf(const DensityReport& report);
+std::string jsonOf(const PlantReport& report);
+
+}  // namespace verdure::app
+
+#endif  // VERDURE_APP_COMMANDS_H_

@@ -1,0 +1,320 @@
+// grow, inspect and bake.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "base/files.h"
+#include "base/progress.h"
+#include "verdure/error.h"
+
+namespace verdure::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+const char* kindName(PartKind kind) {
+  return kind == PartKind::kFoliage ? "foliage" : "wood";
+}
+
+void listSpecies(bool json) {
+  Json all = Json::array();
+  for (const SpeciesInfo& s : speciesList()) {
+    if (json)
+      all.push_back({{"name", s.name}, {"title", s.title}, {"source", s.source}});
+    else
+      fmt::print("{:16}  {}\n", s.name, s.title);
+  }
+  if (json) fmt::print("{}\n", all.dump(2));
+}
+
+void listParameters(const std::string& species, bool json) {
+  Json all = Json::array();
+  for (const ParameterInfo& p : speciesParameters(species)) {
+    if (json)
+      all.push_back({{"name", p.name}, {"value", p.value}, {"help", p.help}});
+    else
+      fmt::print("{:16} {:>10}  {}\n", p.name, p.value, p.help);
+  }
+  if (json) fmt::print("{}\n", all.dump(2));
+}
+
+Surface loadSurface(const std::string& path) {
+  const Plant mesh = loadPlant(path);
+  Surface surface;
+  for (const Mesh& part : mesh.meshes) {
+    const auto first = static_cast<std::uint32_t>(surface.positions.size());
+    surface.positions.insert(surface.positions.end(), part.positions.begin(), part.positions.end());
+    surface.normals.insert(surface.normals.end(), part.normals.begin(), part.normals.end());
+    for (const std::uint32_t i : part.indices) surface.indices.push_back(first + i);
+  }
+  return surface;
+}
+
+/// Progress of a bake on the terminal.
+void showProgress(DensityOptions& options, Progress& progress) {
+  options.progress = [&progress](const char* step, double share) { progress.show(step, share); };
+}
+
+Placement readPlacement(const Json& entry, const std::string& where) {
+  const auto number = [&](const char* key, double fallback) {
+    if (!entry.contains(key)) return fallback;
+    if (!entry[key].is_number()) throw Error(where, fmt::format("\"{}\" is no number", key));
+    return entry[key].get<double>();
+  };
+  Placement place;
+  place.plant = static_cast<std::uint32_t>(number("plant", 0));
+  place.angle = static_cast<float>(number("angle_deg", 0) * M_PI / 180.0);
+  place.scale = static_cast<float>(number("scale", 1));
+  const Json position = entry.value("position", Json::array({0, 0, 0}));
+  if (!position.is_array() || position.size() != 3 || !position[0].is_number() ||
+      !position[1].is_number() || !position[2].is_number())
+    throw Error(where, "\"position\" must be three numbers");
+  for (int a = 0; a < 3; ++a) place.position[a] = position[static_cast<std::size_t>(a)];
+  return place;
+}
+
+void bakePopulation(const BakeCommand& command) {
+  const auto bytes = readFile(command.population);
+  const Json layout = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
+  if (layout.is_discarded() || !layout.is_object() || !layout.contains("placements") ||
+      !layout["placements"].is_array())
+    throw Error(command.population, "is no population layout",
+                "it needs an array \"placements\", see docs/population.md");
+  std::vector<Plant> plants;
+  plants.push_back(loadPlant(command.input, command.load));
+  for (const Json& file : layout.value("plants", Json::array()))
+    plants.push_back(loadPlant(fs::path(command.population).parent_path() / file.get<std::string>(),
+                               command.load));
+  std::vector<Placement> placements;
+  for (std::size_t i = 0; i < layout["placements"].size(); ++i)
+    placements.push_back(readPlacement(layout["placements"][i],
+                                       fmt::format("{}: placement {}", command.population, i)));
+  std::vector<const Plant*> pointers;
+  for (const Plant& plant : plants) pointers.push_back(&plant);
+
+  DensityOptions options = command.bake.checked();
+  const auto bakes = [&] {
+    Progress progress("bake");
+    showProgress(options, progress);
+    return bakeDensityPopulation(pointers, placements, options);
+  }();
+  const fs::path output(command.output);
+  Json reports = Json::array();
+  for (std::size_t i = 0; i < bakes.size(); ++i) {
+    fs::path file = output;
+    file.replace_filename(
+        fmt::format("{}-{:03}{}", output.stem().string(), i, output.extension().string()));
+    savePlant(plants[placements[i].plant], &bakes[i].light, file, {command.color1});
+    reports.push_back(Json::parse(jsonOf(bakes[i].report)));
+    reports.back()["file"] = file.filename().string();
+  }
+  if (!command.report.empty()) writeFile(command.report, reports.dump(2) + "\n");
+  if (command.json)
+    fmt::print("{}\n", reports.dump(2));
+  else
+    fmt::print(
+        "{} plants baked in one field, each with a mesh of its own: {}-000{} and on.\n"
+        "They can no longer be instanced: every plant's light depends on its neighbours.\n",
+        bakes.size(), output.stem().string(), output.extension().string());
+}
+
+}  // namespace
+
+void runGrow(GrowCommand command) {
+  if (command.list) return listSpecies(command.json);
+  if (command.parameters) return listParameters(command.grow.species, command.json);
+  if (command.output.empty())
+    throw Error("grow", "no output file is named", "add -o FILE.glb, or --list for the species");
+  if (command.leaves == "card")
+    command.grow.leaf_form = LeafForm::kCard;
+  else if (command.leaves != "mesh")
+    throw Error("--leaves", fmt::format("'{}' is unknown", command.leaves), "use mesh or card");
+  for (const std::string& text : command.assignments) {
+    const std::size_t at = text.find('=');
+    if (at == std::string::npos || at == 0)
+      throw Error("--set", fmt::format("'{}' is no assignment", text), "write Param=value");
+    command.grow.set.push_back({text.substr(0, at), text.substr(at + 1)});
+  }
+  checkWritable(command.output);
+  Timer timer;
+  const Plant plant = grow(command.grow);
+  const double seconds = timer.lap();
+  savePlant(plant, nullptr, command.output);
+  const PlantReport report = inspectPlant(plant);
+  if (command.json) {
+    Json json = Json::parse(jsonOf(report));
+    json["seconds_grow"] = seconds;
+    fmt::print("{}\n", json.dump(2));
+  } else {
+    fmt::print("{}: {}, {:.1f} m high, {} branches, {} leaves, {} vertices; grown in {:.2f} s\n",
+               command.output, plant.name, report.bounds.size().y, report.branches, report.leaves,
+               report.vertices, seconds);
+  }
+}
+
+void runInspect(const InspectCommand& command) {
+  const Plant plant = loadPlant(command.input, command.load);
+  const PlantReport report = inspectPlant(plant);
+  if (command.json) {
+    fmt::print("{}\n", jsonOf(report));
+    return;
+  }
+  const glm::vec3 size = report.bounds.size();
+  fmt::print("{}\n", command.input);
+  fmt::print("  size      {:.3g} x {:.3g} x {:.3g} m (x, height, z)\n", size.x, size.y, size.z);
+  if (report.origin != glm::dvec3(0.0))
+    fmt::print("  origin    {:.3f}, {:.3f}, {:.3f}\n", report.origin.x, report.origin.y,
+               report.origin.z);
+  fmt::print("  vertices  {}\n  triangles {}\n", report.vertices, report.triangles);
+  fmt::print("  leaves    {} (mean size {:.3g} m, {:.4g} m^2 in all, one side)\n", report.leaves,
+             report.mean_leaf_size_m, report.leaf_area_m2);
+  if (report.branches > 0)
+    fmt::print("  branches  {} in {} levels\n", report.branches, report.levels);
+  else
+    fmt::print("  branches  unknown\n");
+  fmt::print("  parts\n");
+  for (const PartReport& part : report.parts)
+    fmt::print("    {:8} {} (material {}): {} vertices, {} triangles{}{}\n", kindName(part.kind),
+               part.name.empty() ? "(unnamed)" : part.name,
+               part.material.empty() ? "(unnamed)" : part.material, part.vertices, part.triangles,
+               part.leaves > 0 ? fmt::format(", {} leaves", part.leaves) : "",
+               part.has_uvs ? "" : ", no UVs");
+  if (!report.attributes.empty()) {
+    fmt::print("  attributes");
+    for (const std::string& name : report.attributes) fmt::print(" {}", name);
+    fmt::print("\n");
+  }
+  for (const std::string& note : report.notes) fmt::print("  note      {}\n", note);
+  for (const std::string& problem : report.problems) fmt::print("  problem   {}\n", problem);
+}
+
+DensityOptions BakeParameters::checked() const {
+  DensityOptions o = options;
+  if (norm == "inf") {
+    o.norm = {Norm::Kind::kLinf, 0.0f};
+  } else {
+    const float p = parseNumbers("--norm", norm, 1)[0];
+    if (!(p >= 1.0f)) throw Error("--norm", "the exponent must be at least 1", "use 1, 2 or inf");
+    o.norm = p == 1.0f   ? Norm{Norm::Kind::kL1, 1.0f}
+             : p == 2.0f ? Norm{Norm::Kind::kL2, 2.0f}
+                         : Norm{Norm::Kind::kLp, p};
+  }
+  if (normals == "surface-vertex")
+    o.normals = CrownNormals::kSurfaceVertex;
+  else if (normals == "surface-point")
+    o.normals = CrownNormals::kSurfacePoint;
+  else if (normals == "ellipsoid")
+    o.normals = CrownNormals::kEllipsoid;
+  else if (normals == "keep")
+    o.normals = CrownNormals::kKeep;
+  else
+    throw Error("--normals", fmt::format("'{}' is unknown", normals),
+                "use surface-point, surface-vertex, ellipsoid or keep");
+  if (!(max_memory_mib > 0.0)) throw Error("--max-memory", "must be above 0");
+  o.max_memory_bytes = static_cast<std::size_t>(max_memory_mib * 1048576.0);
+  return o;
+}
+
+void runBake(const BakeCommand& command) {
+  checkWritable(command.output);
+  if (!command.report.empty()) checkWritable(command.report);
+  if (!command.population.empty()) return bakePopulation(command);
+  DensityOptions options = command.bake.checked();
+  const Plant plant = loadPlant(command.input, command.load);
+  std::optional<Surface> surface;
+  if (!command.surface.empty()) surface = loadSurface(command.surface);
+  const DensityBake bake = [&] {
+    Progress progress("bake");
+    showProgress(options, progress);
+    return bakeDensity(plant, options, surface ? &*surface : nullptr);
+  }();
+  savePlant(plant, &bake.light, command.output, {command.color1});
+  const std::string json = jsonOf(bake.report);
+  if (!command.report.empty()) writeFile(command.report, json + "\n");
+  if (command.json) {
+    fmt::print("{}\n", json);
+    return;
+  }
+  for (const std::string& note : plant.notes) fmt::print("note: {}\n", note);
+  const DensityReport& r = bake.report;
+  fmt::print(
+      "{}: {} leaves, rho {:.3g} m, tau {:.3g}, d_min {:.3g}; surface of {} vertices{}; "
+      "mean ambient {:.2f}; baked in {:.2f} s\n",
+      command.output, r.leaves, r.rho, r.tau, r.d_min, r.surface_vertices,
+      r.surface_vertices == 0 || r.watertight ? "" : ", not watertight", r.mean_ambient,
+      r.seconds_total);
+}
+
+std::string jsonOf(const DensityReport& r) {
+  const Json json = {{"rho_m", r.rho},
+                     {"tau", r.tau},
+                     {"d_min", r.d_min},
+                     {"k_min", r.k_min},
+                     {"exponent", r.exponent},
+                     {"leaves", r.leaves},
+                     {"leaves_without_area", r.skipped_leaves},
+                     {"generators", r.generators},
+                     {"field",
+                      {{"largest_sum_at_leaves", r.field_max_at_generators},
+                       {"min_at_vertices", r.field_min_at_vertices},
+                       {"max_at_vertices", r.field_max_at_vertices}}},
+                     {"grid",
+                      {{"points", {r.grid_points.x, r.grid_points.y, r.grid_points.z}},
+                       {"points_evaluated", r.grid_points_evaluated},
+                       {"voxel_m", r.voxel_m},
+                       {"bytes", r.grid_bytes}}},
+                     {"surface",
+                      {{"vertices", r.surface_vertices},
+                       {"triangles", r.surface_triangles},
+                       {"components", r.surface_components},
+                       {"watertight", r.watertight},
+                       {"degenerate_gradients", r.degenerate_gradients}}},
+                     {"vertices",
+                      {{"all", r.vertices},
+                       {"foliage", r.foliage_vertices},
+                       {"open", r.vertices_open},
+                       {"core", r.vertices_core},
+                       {"mean_ambient", r.mean_ambient}}},
+                     {"seconds",
+                      {{"generators", r.seconds_generators},
+                       {"surface", r.seconds_surface},
+                       {"ambient", r.seconds_ambient},
+                       {"normals", r.seconds_normals},
+                       {"total", r.seconds_total}}}};
+  return json.dump(2);
+}
+
+std::string jsonOf(const PlantReport& r) {
+  Json parts = Json::array();
+  for (const PartReport& part : r.parts)
+    parts.push_back({{"name", part.name},
+                     {"material", part.material},
+                     {"kind", kindName(part.kind)},
+                     {"vertices", part.vertices},
+                     {"triangles", part.triangles},
+                     {"leaves", part.leaves},
+                     {"uvs", part.has_uvs}});
+  const auto vector = [](const auto& v) { return Json::array({v.x, v.y, v.z}); };
+  const Json json = {{"bounds", {{"min", vector(r.bounds.min)}, {"max", vector(r.bounds.max)}}},
+                     {"origin", vector(r.origin)},
+                     {"vertices", r.vertices},
+                     {"triangles", r.triangles},
+                     {"leaves", r.leaves},
+                     {"leaf_area_m2", r.leaf_area_m2},
+                     {"mean_leaf_size_m", r.mean_leaf_size_m},
+                     {"branches", r.branches},
+                     {"levels", r.levels},
+                     {"parts", parts},
+                     {"attributes", r.attributes},
+                     {"notes", r.notes},
+                     {"problems", r.problems}};
+  // Names may hold bytes that are no UTF-8.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace verdure::app

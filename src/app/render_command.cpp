@@ -1,0 +1,167 @@
+// render.
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "base/files.h"
+#include "base/progress.h"
+#include "verdure/error.h"
+
+namespace verdure::app {
+namespace {
+
+float radians(float degrees) {
+  return degrees * static_cast<float>(M_PI / 180.0);
+}
+
+Terms parseTerms(const RenderCommand& command) {
+  Terms terms = presetTerms(command.light);
+  if (command.terms.empty()) return terms;
+  terms.ambient = terms.diffuse = terms.specular = terms.shadow = terms.textures = false;
+  std::size_t begin = 0;
+  while (begin <= command.terms.size()) {
+    const std::size_t end = std::min(command.terms.find(',', begin), command.terms.size());
+    const std::string name = command.terms.substr(begin, end - begin);
+    bool* const term = name == "ambient"    ? &terms.ambient
+                       : name == "diffuse"  ? &terms.diffuse
+                       : name == "specular" ? &terms.specular
+                       : name == "shadow"   ? &terms.shadow
+                       : name == "textures" ? &terms.textures
+                                            : nullptr;
+    if (term == nullptr)
+      throw Error("--terms", fmt::format("'{}' is unknown", name),
+                  "use ambient, diffuse, specular, shadow, textures");
+    *term = true;
+    begin = end + 1;
+  }
+  return terms;
+}
+
+Camera parseCamera(const RenderCommand& command, const Scene& scene, float aspect) {
+  const float fov = radians(static_cast<float>(command.fov_deg));
+  if (command.camera == "auto")
+    return automaticCamera(scene, radians(35.0f), radians(4.0f), aspect, fov);
+  const std::vector<float> n = parseNumbers("--camera", command.camera, 0);
+  if (n.size() == 2) return automaticCamera(scene, radians(n[0]), radians(n[1]), aspect, fov);
+  if (n.size() == 6) return {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, fov};
+  throw Error("--camera", "needs 2 or 6 numbers", "AZIMUTH,ELEVATION or X,Y,Z,TX,TY,TZ");
+}
+
+}  // namespace
+
+std::vector<float> parseNumbers(const std::string& option, const std::string& text,
+                                std::size_t count) {
+  std::vector<float> numbers;
+  const char *at = text.data(), *const end = text.data() + text.size();
+  for (;;) {
+    float value = 0.0f;
+    const auto [next, problem] = std::from_chars(at, end, value);
+    if (problem != std::errc() || !std::isfinite(value) || (next != end && *next != ','))
+      throw Error(option, fmt::format("'{}' is not a list of numbers", text),
+                  "separate them by commas");
+    numbers.push_back(value);
+    if (next == end) break;
+    at = next + 1;
+  }
+  if (count != 0 && numbers.size() != count)
+    throw Error(option,
+                fmt::format("'{}' has {} numbers, {} are needed", text, numbers.size(), count));
+  return numbers;
+}
+
+std::pair<int, int> parseSize(const std::string& text) {
+  const std::size_t x = text.find('x');
+  int width = 0, height = 0;
+  const auto read = [](const std::string& part, int& out) {
+    const auto [end, problem] = std::from_chars(part.data(), part.data() + part.size(), out);
+    return problem == std::errc() && end == part.data() + part.size();
+  };
+  if (x == std::string::npos || !read(text.substr(0, x), width) ||
+      !read(text.substr(x + 1), height))
+    throw Error("--size", fmt::format("'{}' is no size", text), "write 960x720");
+  if (width <= 0 || height <= 0)
+    throw Error("--size", fmt::format("'{}' has no pixels", text), "write 960x720");
+  return {width, height};
+}
+
+std::optional<CrownLight> lightOfFile(const Plant& plant) {
+  CrownLight light;
+  bool any = false;
+  for (const Mesh& mesh : plant.meshes) {
+    MeshLight part{mesh.normals, mesh.ambient};
+    any = any || !mesh.ambient.empty();
+    if (part.ambient.empty()) part.ambient.assign(mesh.positions.size(), 1.0f);
+    for (float& k : part.ambient) k = std::clamp(k, 1.0f / 255.0f, 1.0f);
+    light.meshes.push_back(std::move(part));
+  }
+  if (!any) return std::nullopt;
+  return light;
+}
+
+void runRender(const RenderCommand& command) {
+  View view;
+  std::tie(view.width, view.height) = parseSize(command.size);
+  view.terms = parseTerms(command);
+  const std::vector<float> sun = parseNumbers("--sun", command.sun, 2);
+  view.sun_azimuth = radians(sun[0]);
+  view.sun_elevation = radians(sun[1]);
+  if (!(command.fov_deg > 0.0 && command.fov_deg < 170.0))
+    throw Error("--fov", "must lie between 0 and 170 degrees", "34 is usual");
+  if (!command.background.empty()) {
+    const auto rgb = parseNumbers("--background", command.background, 3);
+    view.background = glm::vec3(rgb[0], rgb[1], rgb[2]);
+  }
+  if (command.shadow_map < 16)
+    throw Error("--shadow-map", "must be at least 16 pixels", "2048 is usual");
+  view.shadow_map_size = command.shadow_map;
+  const DensityOptions bake_options = command.bake.checked();
+  checkWritable(command.output);
+
+  Progress progress("render");
+  progress.show("device");
+  Renderer renderer(command.device);
+  progress.show("loading");
+  const Plant plant = loadPlant(command.input, command.load);
+  // The file's own bake, or one made now; a light without baked terms needs neither.
+  std::optional<CrownLight> light = lightOfFile(plant);
+  const bool baked_terms = view.terms.normal == NormalSource::kCrown ||
+                           view.terms.ambient_source == AmbientSource::kBaked;
+  double bake_seconds = 0.0;
+  if (!light && baked_terms) {
+    progress.show("baking");
+    DensityBake bake = bakeDensity(plant, bake_options);
+    light = std::move(bake.light);
+    bake_seconds = bake.report.seconds_total;
+  }
+  Scene scene;
+  scene.ground = !command.no_ground;
+  scene.ground_height = bounds(plant).min.y;
+  scene.items.push_back({&plant, light ? &*light : nullptr});
+  view.camera =
+      parseCamera(command, scene, static_cast<float>(view.width) / static_cast<float>(view.height));
+  progress.show("drawing");
+  renderer.setScene(scene);
+  const Frame frame = renderer.render(view);
+  writePng(frame.image, command.output);
+  progress.show("done");
+  if (command.json)
+    fmt::print("{}\n",
+               nlohmann::ordered_json{{"device", renderer.deviceName()},
+                                      {"width", view.width},
+                                      {"height", view.height},
+                                      {"bake_seconds", bake_seconds},
+                                      {"pack_ms", frame.times.pack_ms},
+                                      {"shadow_ms", frame.times.shadow_ms},
+                                      {"color_ms", frame.times.color_ms},
+                                      {"validation_messages", renderer.validationMessages()}}
+                   .dump(2));
+  else
+    fmt::print("{}: {}x{}, {} light, on {}; shadow {:.1f} ms, colour {:.1f} ms\n", command.output,
+               view.width, view.height, command.light, renderer.deviceName(), frame.times.shadow_ms,
+               frame.times.color_ms);
+}
+
+}  // namespace verdure::app

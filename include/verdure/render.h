@@ -62,7 +62,7 @@ struct View {
   int width = 960;
   int height = 720;
   Camera camera;
-  float sun_azimuth = 2.2f;     ///< radians from +Z (south) towards +X (east)
+  float sun_azimuth = 0.9f;     ///< radians from +Z (south) towards +X (east)
   float sun_elevation = 0.75f;  ///< radians above the horizon
   Terms terms;
   glm::vec3 sun_color{1.0f, 0.95f, 0.86f};

@@ -13,16 +13,17 @@ namespace verdure {
 namespace {
 
 constexpr int kGroundTextureSize = 512;
+constexpr int kGroundNoiseSize = 128;
 constexpr vk::ImageAspectFlags kColorAspect = vk::ImageAspectFlagBits::eColor;
 constexpr vk::ImageAspectFlags kDepthAspect = vk::ImageAspectFlagBits::eDepth;
 
 vk::raii::DescriptorSetLayout makeFrameSet(const gpu::Device& device) {
   using Type = vk::DescriptorType;
   using Stage = vk::ShaderStageFlagBits;
-  return gpu::makeSetLayout(
-      device,
-      std::array{Type::eUniformBuffer, Type::eCombinedImageSampler, Type::eCombinedImageSampler},
-      Stage::eVertex | Stage::eFragment);
+  return gpu::makeSetLayout(device,
+                            std::array{Type::eUniformBuffer, Type::eCombinedImageSampler,
+                                       Type::eCombinedImageSampler, Type::eCombinedImageSampler},
+                            Stage::eVertex | Stage::eFragment);
 }
 
 vk::raii::DescriptorSetLayout makeMaterialSet(const gpu::Device& device) {
@@ -50,6 +51,8 @@ FrameDrawer::FrameDrawer(const gpu::Device& device)
   gpu::Upload upload(device);
   ground_texture_ = upload.texture(buildColorMips(makeGroundTexture(kGroundTextureSize), {}).levels,
                                    vk::Format::eR8G8B8A8Srgb);
+  ground_noise_ = upload.texture(buildLinearMips(makeGroundNoise(kGroundNoiseSize)).levels,
+                                 vk::Format::eR8G8B8A8Unorm);
   upload.finish();
   ground_sampler_ =
       device.raii().createSampler({.magFilter = vk::Filter::eLinear,
@@ -75,7 +78,7 @@ FrameDrawer::FrameDrawer(const gpu::Device& device)
   const std::array sizes{
       vk::DescriptorPoolSize{.type = vk::DescriptorType::eUniformBuffer, .descriptorCount = 1},
       vk::DescriptorPoolSize{.type = vk::DescriptorType::eCombinedImageSampler,
-                             .descriptorCount = 2}};
+                             .descriptorCount = 3}};
   pool_ = device.raii().createDescriptorPool(
       {.flags = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
        .maxSets = 1,
@@ -153,16 +156,20 @@ void FrameDrawer::writeFrameSet() {
   const vk::DescriptorImageInfo ground{.sampler = *ground_sampler_,
                                        .imageView = *ground_texture_.view,
                                        .imageLayout = vk::ImageLayout::eShaderReadOnlyOptimal};
+  vk::DescriptorImageInfo noise = ground;
+  noise.imageView = *ground_noise_.view;
   const auto write = [this](std::uint32_t binding, vk::DescriptorType type) {
     return vk::WriteDescriptorSet{
         .dstSet = *frame_set_, .dstBinding = binding, .descriptorCount = 1, .descriptorType = type};
   };
   std::array writes{write(0, vk::DescriptorType::eUniformBuffer),
                     write(1, vk::DescriptorType::eCombinedImageSampler),
-                    write(2, vk::DescriptorType::eCombinedImageSampler)};
+                    write(2, vk::DescriptorType::eCombinedImageSampler),
+                    write(3, vk::DescriptorType::eCombinedImageSampler)};
   writes[0].pBufferInfo = &uniforms;
   writes[1].pImageInfo = &shadow;
   writes[2].pImageInfo = &ground;
+  writes[3].pImageInfo = &noise;
   device_->raii().updateDescriptorSets(writes, nullptr);
 }
 

@@ -41,7 +41,7 @@ class FrameDrawer {
   GroundPass ground_pass_;
   SkyPass sky_pass_;
   gpu::Timers timers_;
-  gpu::Texture ground_texture_;
+  gpu::Texture ground_texture_, ground_noise_;
   vk::raii::Sampler ground_sampler_ = nullptr;
   vk::raii::Sampler shadow_sampler_ = nullptr;
   gpu::Buffer uniforms_;

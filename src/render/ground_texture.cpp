@@ -16,7 +16,7 @@ Image makeGroundTexture(int size) {
   // Soil between the blades, slightly uneven.
   Random random(20070);
   std::vector<glm::vec3> color(n * n);
-  for (glm::vec3& c : color) c = glm::vec3(0.075f, 0.070f, 0.030f) * random.uniform(0.7f, 1.2f);
+  for (glm::vec3& c : color) c = glm::vec3(0.040f, 0.040f, 0.018f) * random.uniform(0.6f, 1.2f);
 
   // Blades: strokes that get lighter towards the tip; later ones lie above earlier ones.
   const int blades = size * size / 14;
@@ -30,7 +30,7 @@ Image makeGroundTexture(int size) {
     const float dry = random.uniform();
     const glm::vec3 green = glm::mix(glm::vec3(0.075f, 0.165f, 0.028f),
                                      glm::vec3(0.20f, 0.21f, 0.075f), dry * dry * dry) *
-                            random.uniform(0.55f, 1.2f);
+                            random.uniform(0.35f, 1.45f);
     glm::vec2 p = root;
     const int steps = static_cast<int>(length * 1.5f) + 1;
     for (int s = 0; s < steps; ++s) {
@@ -49,7 +49,7 @@ Image makeGroundTexture(int size) {
             return static_cast<std::size_t>(i_v < 0 ? i_v + size : i_v) % n;
           };
           glm::vec3& c = color[wrapped(p.y, dy) * n + wrapped(p.x, dx)];
-          c = glm::mix(c, green * glm::mix(0.6f, 1.25f, t), cover * 0.8f);
+          c = glm::mix(c, green * glm::mix(0.45f, 1.35f, t), cover * 0.8f);
         }
     }
   }
@@ -64,6 +64,39 @@ Image makeGroundTexture(int size) {
       image.rgba[4 * i + static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(std::lround(
           255.0f * shared::srgbFromLinear(std::clamp(color[i][k] * scale[k], 0.0f, 1.0f))));
   for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
+  return image;
+}
+
+Image makeGroundNoise(int size) {
+  Random random(2007);
+  std::vector<float> sum(static_cast<std::size_t>(size) * static_cast<std::size_t>(size), 0.0f);
+  float total = 0.0f, weight = 1.0f;
+  for (int cells = 4; cells <= size / 4; cells *= 2) {  // value noise, smoothly interpolated
+    const auto c = static_cast<std::size_t>(cells);
+    std::vector<float> lattice(c * c);
+    for (float& v : lattice) v = random.uniform();
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x) {
+        const glm::vec2 p =
+            glm::vec2(x, y) * (static_cast<float>(cells) / static_cast<float>(size));
+        const glm::vec2 cell = glm::floor(p);
+        const glm::vec2 f = glm::smoothstep(glm::vec2(0.0f), glm::vec2(1.0f), p - cell);
+        const auto x0 = static_cast<std::size_t>(cell.x), y0 = static_cast<std::size_t>(cell.y);
+        const std::size_t x1 = (x0 + 1) % c, y1 = (y0 + 1) % c;
+        sum[static_cast<std::size_t>(y) * static_cast<std::size_t>(size) +
+            static_cast<std::size_t>(x)] +=
+            weight * glm::mix(glm::mix(lattice[y0 * c + x0], lattice[y0 * c + x1], f.x),
+                              glm::mix(lattice[y1 * c + x0], lattice[y1 * c + x1], f.x), f.y);
+      }
+    total += weight;
+    weight *= 0.6f;
+  }
+  Image image(size, size);
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    const float v = std::clamp(0.5f + 1.6f * (sum[i] / total - 0.5f), 0.0f, 1.0f);
+    for (std::size_t k = 0; k < 4; ++k)
+      image.rgba[4 * i + k] = k == 3 ? 255 : static_cast<std::uint8_t>(std::lround(255.0f * v));
+  }
   return image;
 }
 

@@ -9,6 +9,10 @@ namespace verdure {
 /// linear light is shared::groundMeanColor(). Always the same.
 Image makeGroundTexture(int size);
 
+/// A repeating cloud of fractal noise in all colour channels, linear, mean about 0.5: where grass
+/// is lighter, darker or drier.
+Image makeGroundNoise(int size);
+
 }  // namespace verdure
 
 #endif  // VERDURE_RENDER_GROUND_TEXTURE_H_

@@ -15,15 +15,15 @@ inline constexpr float kWoodSpecular = 0.015f;
 inline constexpr float kWoodExponent = 8.0f;
 
 // A clear summer sky, linear RGB.
-inline constexpr glm::vec3 kSkyHorizon{0.72f, 0.83f, 0.92f};
+inline constexpr glm::vec3 kSkyHorizon{0.66f, 0.78f, 0.90f};
 inline constexpr glm::vec3 kSkyZenith{0.13f, 0.32f, 0.72f};
 
 // Ground: side of a tile of the texture, radius of the disc and distance at which haze hides half,
 // the latter two in distances of the camera from its target (and at least in metres).
-inline constexpr float kGroundTile_m = 1.6f;
+inline constexpr float kGroundTile_m = 2.4f;
 inline constexpr float kGroundRadius = 2000.0f;
-inline constexpr float kHazeHalf = 14.0f;
-inline constexpr float kHazeHalfLeast_m = 60.0f;
+inline constexpr float kHazeHalf = 22.0f;
+inline constexpr float kHazeHalfLeast_m = 80.0f;
 
 }  // namespace verdure::look
 

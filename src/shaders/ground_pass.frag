@@ -9,16 +9,18 @@
 layout(location = 0) in vec3 position;
 layout(location = 0) out vec4 out_color;
 
-/// The grass texture laid over itself at three sizes and angles, so that its repetition is not
-/// seen: the nearest gives the blades, the two large ones patches of light and dark, as factors
-/// around 1.
+/// Grass at its own size, and again a little larger and turned, where the repetition of one hides
+/// that of the other; noise at three sizes makes patches, lighter, darker and drier.
 vec3 grass(vec2 p) {
-  vec3 mean = groundMeanColor();
   vec2 q = p / frame.ground.w;
-  vec3 near = texture(ground_texture, q).rgb;
-  vec3 middle = texture(ground_texture, mat2(0.8, 0.6, -0.6, 0.8) * q * 0.137).rgb / mean;
-  vec3 far = texture(ground_texture, mat2(0.28, -0.96, 0.96, 0.28) * q * 0.0213).rgb / mean;
-  return near * mix(vec3(1.0), middle, 0.45) * mix(vec3(1.0), far, 0.4);
+  vec3 blades = mix(texture(ground_texture, q).rgb,
+                    texture(ground_texture, mat2(0.8, 0.6, -0.6, 0.8) * q * 0.618).rgb, 0.35);
+  float fine = texture(ground_noise, q * 0.211).r;
+  float middle = texture(ground_noise, mat2(0.28, -0.96, 0.96, 0.28) * q * 0.0371).r;
+  float broad = texture(ground_noise, mat2(0.6, 0.8, -0.8, 0.6) * q * 0.0059).r;
+  float tone = 0.5 * fine + 0.3 * middle + 0.2 * broad;
+  vec3 dry = vec3(1.2, 1.03, 0.95);
+  return blades * mix(0.55, 1.45, tone) * mix(vec3(1.0), dry, middle * broad);
 }
 
 void main() {

@@ -24,7 +24,7 @@ SHARED_FUNCTION float hazeShare(float distance, float half_distance) {
 
 /// Mean colour of the ground's texture (grass in summer).
 SHARED_FUNCTION vec3 groundMeanColor() {
-  return vec3(0.105f, 0.155f, 0.038f);
+  return vec3(0.080f, 0.135f, 0.032f);
 }
 
 SHARED_END

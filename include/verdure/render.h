@@ -62,11 +62,11 @@ struct View {
   int width = 960;
   int height = 720;
   Camera camera;
-  float sun_azimuth = 2.2f;     ///< radians from +Z (south) towards +X (east)
+  float sun_azimuth = 0.9f;     ///< radians from +Z (south) towards +X (east)
   float sun_elevation = 0.75f;  ///< radians above the horizon
   Terms terms;
-  glm::vec3 sun_color{1.0f, 0.95f, 0.86f};
-  glm::vec3 ambient_color{0.45f, 0.52f, 0.60f};
+  glm::vec3 sun_color{1.75f, 1.62f, 1.40f};
+  glm::vec3 ambient_color{0.50f, 0.56f, 0.62f};
   int shadow_map_size = 2048;
   std::optional<glm::vec3> background;  ///< linear RGB instead of the gradient sky
 };

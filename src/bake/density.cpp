@@ -258,16 +258,24 @@ std::vector<glm::vec3> crownNormals(const CrownField& crown, std::span<const glm
       break;
     }
     case CrownNormals::kSurfaceVertex:
-      parallelFor(points.size(), 1024, [&](std::size_t i) {
-        normals[i] = crown.surface->normals[crown.nearest->vertex(points[i])];
+      parallelChunks(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        std::uint32_t hint = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+          hint = crown.nearest->vertex(points[i], hint);
+          normals[i] = crown.surface->normals[hint];
+        }
       });
       break;
     case CrownNormals::kSurfacePoint: {
       std::vector<glm::vec3> feet(crown.own_surface ? points.size() : 0);
-      parallelFor(points.size(), 1024, [&](std::size_t i) {
-        const NearestSurface::Point p = crown.nearest->point(points[i]);
-        normals[i] = p.normal;
-        if (crown.own_surface) feet[i] = p.position;
+      parallelChunks(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        std::uint32_t hint = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+          const NearestSurface::Point p = crown.nearest->point(points[i], hint);
+          hint = p.vertex;
+          normals[i] = p.normal;
+          if (crown.own_surface) feet[i] = p.position;
+        }
       });
       if (!crown.own_surface) break;
       std::vector<float> sums(points.size());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <limits>
 #pragma GCC diagnostic push
@@ -15,9 +16,6 @@
 namespace verdure {
 namespace {
 
-// How many of the nearest vertices the search for the nearest point starts from.
-constexpr std::size_t kStarts = 2;
-
 struct Cloud {
   const std::vector<glm::vec3>& points;
   std::size_t kdtree_get_point_count() const { return points.size(); }
@@ -30,30 +28,24 @@ struct Cloud {
   }
 };
 
-/// Keeps the best few, ordered by distance, then by index, so that ties do not depend on the tree.
+/// The best so far, by distance, then by index, so that ties do not depend on the tree.
 struct LowestIndex {
   using DistanceType = float;
   using IndexType = std::uint32_t;
-  struct Found {
-    float distance2 = std::numeric_limits<float>::max();
-    std::uint32_t index = std::numeric_limits<std::uint32_t>::max();
-    bool operator<(const Found& o) const {
-      return distance2 != o.distance2 ? distance2 < o.distance2 : index < o.index;
-    }
-  };
-  std::array<Found, kStarts> best{};
-  std::size_t wanted = 1;
+  float distance2 = std::numeric_limits<float>::max();
+  std::uint32_t index = std::numeric_limits<std::uint32_t>::max();
 
-  std::size_t size() const { return wanted; }
+  std::size_t size() const { return 1; }
   bool full() const { return true; }
   // The tree drops what is not nearer than this: one step beyond lets equal distances through.
   float worstDist() const {
-    return std::nextafter(best[wanted - 1].distance2, std::numeric_limits<float>::max());
+    return std::bit_cast<float>(std::bit_cast<std::uint32_t>(distance2) + 1u);
   }
-  bool addPoint(float distance2, std::uint32_t index) {
-    Found candidate{distance2, index};
-    for (std::size_t i = 0; i < wanted; ++i)
-      if (candidate < best[i]) std::swap(candidate, best[i]);
+  bool addPoint(float candidate2, std::uint32_t candidate) {
+    if (candidate2 < distance2 || (candidate2 == distance2 && candidate < index)) {
+      distance2 = candidate2;
+      index = candidate;
+    }
     return true;
   }
 };
@@ -101,11 +93,17 @@ struct NearestSurface::Tree {
       : cloud{points}, index(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(16)) {
     index.buildIndex();
   }
-  LowestIndex search(const glm::vec3& point, std::size_t wanted) const {
+  /// `hint` is any vertex; the nearer it is, the less is searched. The result does not depend on
+  /// it.
+  std::uint32_t search(const glm::vec3& point, std::uint32_t hint) const {
     LowestIndex result;
-    result.wanted = wanted;
+    const glm::vec3 offset = point - cloud.points[hint];
+    // As the tree adds it up, so that the hint does not seem nearer than itself.
+    result.addPoint(offset.x * offset.x + offset.y * offset.y + offset.z * offset.z, hint);
+    result.distance2 *= 1.0f + 1e-6f;
+    result.index = std::numeric_limits<std::uint32_t>::max();
     index.findNeighbors(result, &point.x, nanoflann::SearchParams());
-    return result;
+    return result.index;
   }
 };
 
@@ -121,18 +119,19 @@ NearestSurface::NearestSurface(const Surface& surface)
 }
 NearestSurface::~NearestSurface() = default;
 
-std::uint32_t NearestSurface::vertex(const glm::vec3& point) const {
-  return tree_->search(point, 1).best[0].index;
+std::uint32_t NearestSurface::vertex(const glm::vec3& point, std::uint32_t hint) const {
+  return tree_->search(point, hint);
 }
 
-NearestSurface::Point NearestSurface::point(const glm::vec3& from) const {
-  const std::size_t starts = std::min(kStarts, surface_.positions.size());
-  const LowestIndex found = tree_->search(from, starts);
+NearestSurface::Point NearestSurface::point(const glm::vec3& from, std::uint32_t hint) const {
+  Point result;
+  result.vertex = tree_->search(from, hint);
   float best = std::numeric_limits<float>::max();
-  std::uint32_t best_triangle = 0;
-  glm::vec3 best_weights(0.0f);
-  // A fan's best triangle may lead on to a corner whose fan comes nearer still.
-  const auto searchFan = [&](std::uint32_t v) {
+  const std::uint32_t* triangle = nullptr;
+  glm::vec3 weights(0.0f);
+  // The nearest point of the fan around a vertex is one of the surface's as well, unless it lies
+  // on the fan's rim: then the fan around a corner there may come nearer still.
+  for (std::uint32_t v = result.vertex;;) {
     bool nearer = false;
     for (std::uint32_t k = first_[v]; k < first_[v + 1]; ++k) {
       const std::uint32_t* corner = &surface_.indices[3 * std::size_t{triangles_[k]}];
@@ -143,32 +142,31 @@ NearestSurface::Point NearestSurface::point(const glm::vec3& from) const {
       const float distance2 = glm::dot(offset, offset);
       if (distance2 < best) {
         best = distance2;
-        best_triangle = triangles_[k];
-        best_weights = w;
+        triangle = corner;
+        weights = w;
         nearer = true;
       }
     }
-    return nearer;
-  };
-  for (std::size_t i = 0; i < starts; ++i) {
-    bool nearer = searchFan(found.best[i].index);
-    while (nearer) {
-      nearer = false;
-      const std::uint32_t triangle = best_triangle;
-      for (std::size_t k = 0; k < 3; ++k)
-        nearer = searchFan(surface_.indices[3 * std::size_t{triangle} + k]) || nearer;
+    if (!nearer) break;
+    std::uint32_t next = v;
+    float most = 0.0f;
+    for (int k = 0; k < 3; ++k) {
+      if (triangle[k] == v && weights[k] > 0.0f) most = 2.0f;  // not on the rim
+      if (triangle[k] != v && weights[k] > most) {
+        most = weights[k];
+        next = triangle[k];
+      }
     }
+    if (next == v || most > 1.0f) break;
+    v = next;
   }
-  Point result;
   glm::vec3 normal(0.0f);
   for (int k = 0; k < 3; ++k) {
-    const std::uint32_t v =
-        surface_.indices[3 * std::size_t{best_triangle} + static_cast<std::size_t>(k)];
-    result.position += best_weights[k] * surface_.positions[v];
-    normal += best_weights[k] * surface_.normals[v];
+    result.position += weights[k] * surface_.positions[triangle[k]];
+    normal += weights[k] * surface_.normals[triangle[k]];
   }
   const float length = glm::length(normal);
-  result.normal = length > 1e-6f ? normal / length : surface_.normals[found.best[0].index];
+  result.normal = length > 1e-6f ? normal / length : surface_.normals[result.vertex];
   return result;
 }
 

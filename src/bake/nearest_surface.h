@@ -14,16 +14,19 @@ class NearestSurface {
   explicit NearestSurface(const Surface& surface);
   ~NearestSurface();
 
-  /// The nearest vertex, the one with the lowest index when several are.
-  std::uint32_t vertex(const glm::vec3& point) const;
+  /// The nearest vertex, the one with the lowest index when several are. `hint` is any vertex, best
+  /// the answer for a point close by: it shortens the search and does not change the result.
+  std::uint32_t vertex(const glm::vec3& point, std::uint32_t hint = 0) const;
 
   struct Point {
     glm::vec3 position{0.0f};
-    glm::vec3 normal{0.0f};  ///< interpolated from the triangle's vertices, unit
+    glm::vec3 normal{0.0f};    ///< interpolated from the triangle's vertices, unit
+    std::uint32_t vertex = 0;  ///< the nearest vertex
   };
-  /// The nearest point of the triangles around the nearest vertices and, from there, of their
-  /// neighbours while that comes nearer: on a mesh of small triangles this is the nearest point.
-  Point point(const glm::vec3& from) const;
+  /// The point of the triangles around the nearest vertex that is nearest or, where it lies on
+  /// their rim, walks on from there while that comes nearer: on marching cubes' meshes
+  /// the nearest point to within a twentieth of a cell (another sheet may be nearer by so little).
+  Point point(const glm::vec3& from, std::uint32_t hint = 0) const;
 
   /// Every edge has exactly two triangles, with opposite directions.
   bool watertight() const;

@@ -33,10 +33,14 @@ std::uint32_t MemoryPool::typeFor(std::uint32_t type_bits, MemoryUse use) const 
 
 Allocation MemoryPool::allocate(const vk::MemoryRequirements& need, MemoryUse use, bool for_image) {
   const std::uint32_t type = typeFor(need.memoryTypeBits, use);
+  const bool wants_mapping = use != MemoryUse::kDevice;
   std::erase_if(blocks_, [](const auto& block) { return block.expired(); });
   for (const std::weak_ptr<MemoryBlock>& weak : blocks_) {
     const std::shared_ptr<MemoryBlock> block = weak.lock();
-    if (block->type != type || block->images != for_image) continue;
+    // Software drivers have one type for all uses: a block that is not mapped must not be handed out
+    // to be written.
+    const bool mapped = block->mapped != nullptr;
+    if (block->type != type || block->images != for_image || mapped != wants_mapping) continue;
     const vk::DeviceSize offset =
         (block->used + need.alignment - 1) / need.alignment * need.alignment;
     if (offset + need.size > block->size) continue;
@@ -55,7 +59,7 @@ Allocation MemoryPool::allocate(const vk::MemoryRequirements& need, MemoryUse us
     throw Error("Vulkan", "out of GPU memory (" + std::to_string(block->size >> 20) + " MiB more)",
                 "use a smaller image, shadow map or scene");
   }
-  if (use != MemoryUse::kDevice)
+  if (wants_mapping)
     block->mapped = static_cast<std::byte*>(block->memory.mapMemory(0, VK_WHOLE_SIZE));
   blocks_.push_back(block);
   return {std::move(block), 0, need.size};

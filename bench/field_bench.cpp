@@ -79,10 +79,9 @@ void fieldAndSurface(benchmark::State& state) {
   }
   setThreadCount(0);
   state.counters["vertices"] = static_cast<double>(surface.positions.size());
-  state.counters["evaluated_share"] =
-      static_cast<double>(statistics.grid_points_evaluated) /
-      (static_cast<double>(statistics.grid_points.x) * statistics.grid_points.y *
-       statistics.grid_points.z);
+  state.counters["evaluated_share"] = static_cast<double>(statistics.grid_points_evaluated) /
+                                      (static_cast<double>(statistics.grid_points.x) *
+                                       statistics.grid_points.y * statistics.grid_points.z);
   state.counters["coarse_step"] = statistics.coarse_step;
 }
 BENCHMARK(fieldAndSurface)
@@ -109,7 +108,10 @@ void baselineSplat(benchmark::State& state) {
   setThreadCount(0);
 }
 BENCHMARK(baselineSplat)
-    ->Arg(40)->Arg(75)->Arg(134)->Arg(260)
+    ->Arg(40)
+    ->Arg(75)
+    ->Arg(134)
+    ->Arg(260)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
@@ -127,7 +129,10 @@ void baselineSplatAndFlyingEdges(benchmark::State& state) {
   state.counters["vertices"] = static_cast<double>(vertices);
 }
 BENCHMARK(baselineSplatAndFlyingEdges)
-    ->Arg(40)->Arg(75)->Arg(134)->Arg(260)
+    ->Arg(40)
+    ->Arg(75)
+    ->Arg(134)
+    ->Arg(260)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 #endif

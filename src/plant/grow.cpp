@@ -52,7 +52,8 @@ Plant grow(const GrowOptions& options) {
   plant.branches = branchesOf(skeleton.stems);
 
   // Bark and leaves look the same for all plants of a species: textures do not depend on the seed.
-  BarkTexture bark = makeBark(species.bark, options.texture_size, 1);
+  const auto pattern = static_cast<std::uint32_t>(&species - allSpecies().data()) + 1;
+  BarkTexture bark = makeBark(species.bark, options.texture_size, pattern);
   plant.textures.push_back({"bark", std::move(bark.color)});
   plant.textures.push_back({"bark normal", std::move(bark.normal)});
   Material wood;
@@ -62,7 +63,7 @@ Plant grow(const GrowOptions& options) {
   plant.materials.push_back(wood);
   if (!skeleton.leaves.empty()) {
     Texture leaf{"leaf", makeLeafTexture(shape, species.leaf, parameters.leaf_scale_x,
-                                         options.texture_size, 1)};
+                                         options.texture_size, pattern)};
     leaf.clamp_u = leaf.clamp_v = true;
     plant.textures.push_back(std::move(leaf));
     Material foliage;

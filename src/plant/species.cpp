@@ -198,9 +198,9 @@ Species silverBirch() {
                 "1LengthV=0.05 1Taper=1 1CurveRes=9 1Curve=30 1CurveV=70 "
                 "2DownAngle=42 2DownAngleV=12 2Rotate=140 2RotateV=30 2Branches=18 2Length=0.42 "
                 "2LengthV=0.1 2Taper=1 2CurveRes=7 2Curve=20 2CurveV=60 "
-                "3DownAngle=40 3DownAngleV=12 3Rotate=140 3RotateV=20 3Branches=7 3Length=0.5 "
-                "3LengthV=0.08 3Taper=1 3CurveRes=4 3CurveV=30 "
-                "Leaves=21 LeafShape=5 LeafScale=0.09 LeafScaleX=0.8 LeafBend=0.3 "
+                "3DownAngle=58 3DownAngleV=18 3Rotate=140 3RotateV=20 3Branches=8 3Length=0.5 "
+                "3LengthV=0.08 3Taper=1 3CurveRes=4 3CurveV=70 "
+                "Leaves=17 LeafShape=5 LeafScale=0.105 LeafScaleX=0.8 LeafBend=0.45 "
                 "AttractionUp=-0.6");
   s.bark = {BarkKind::kPaper,
             {0.90f, 0.89f, 0.86f},

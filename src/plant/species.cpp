@@ -37,6 +37,8 @@ Species quakingAspen() {
             0.9f};
   s.leaf = {{0.37f, 0.50f, 0.20f}, {0.50f, 0.58f, 0.22f}, {0.62f, 0.68f, 0.38f}};
   s.blade = {14, 25};
+  s.twig_radius = 0.012f;
+  s.twig_tint = {0.30f, 0.22f, 0.15f};
   return s;
 }
 
@@ -78,7 +80,7 @@ Species weepingWillow() {
       s.parameters,
       "Shape=3 BaseSize=0.05 Scale=14 ScaleV=1.5 Levels=4 Ratio=0.025 RatioPower=1.8 "
       "Lobes=9 LobeDepth=0.03 Flare=0.75 "
-      "0Length=0.8 0Taper=1 0BaseSplits=2 0SplitAngle=22 0CurveRes=8 "
+      "0Length=0.72 0Taper=1 0BaseSplits=2 0SplitAngle=22 0CurveRes=8 "
       "0CurveBack=20 0CurveV=120 "
       "1DownAngle=20 1DownAngleV=10 1Rotate=-120 1RotateV=30 1Branches=12 1Length=0.5 "
       "1LengthV=0.1 1Taper=1 1SegSplits=0.05 1SplitAngle=30 1SplitAngleV=10 1CurveRes=12 "
@@ -98,6 +100,8 @@ Species weepingWillow() {
             0.7f};
   s.leaf = {{0.42f, 0.53f, 0.24f}, {0.55f, 0.61f, 0.28f}, {0.66f, 0.70f, 0.44f}};
   s.blade = {16, 35};
+  s.twig_radius = 0.008f;
+  s.twig_tint = {0.95f, 1.0f, 0.45f};
   return s;
 }
 
@@ -157,6 +161,8 @@ Species japaneseMaple() {
             0.35f};
   s.leaf = {{0.45f, 0.10f, 0.10f}, {0.60f, 0.19f, 0.11f}, {0.62f, 0.26f, 0.18f}};
   s.blade = {8, 40};
+  s.twig_radius = 0.006f;
+  s.twig_tint = {0.9f, 0.35f, 0.3f};
   return s;
 }
 
@@ -210,6 +216,8 @@ Species silverBirch() {
             0.8f};
   s.leaf = {{0.34f, 0.48f, 0.18f}, {0.47f, 0.56f, 0.22f}, {0.60f, 0.66f, 0.38f}};
   s.blade = {16, 35};
+  s.twig_radius = 0.014f;
+  s.twig_tint = {0.16f, 0.085f, 0.06f};
   return s;
 }
 

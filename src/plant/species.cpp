@@ -109,8 +109,8 @@ Species weepingWillow() {
       "Scale=14 ScaleV=1.5 Ratio=0.025 RatioPower=1.8 0Length=0.72 "
       "0SegSplits=0 0SplitAngle=22 1Branches=12 1SegSplits=0.05 1CurveRes=12 "
       "2Branches=9 2Length=0.75 2SegSplits=0.05 2CurveRes=8 2CurveV=60 "
-      "3Branches=6 3Length=0.7 3LengthV=0.25 3CurveRes=4 3CurveV=40 "
-      "Leaves=22 LeafShape=2 LeafScale=0.19 LeafScaleX=0.24 LeafBend=0.1 AttractionUp=-2");
+      "3DownAngle=40 3Branches=6 3Length=0.7 3LengthV=0.25 3CurveRes=4 3CurveV=40 "
+      "Leaves=21 LeafShape=2 LeafScale=0.19 LeafScaleX=0.24 LeafBend=0.1 AttractionUp=-2");
   s.bark = {BarkKind::kFurrows,
             {0.47f, 0.42f, 0.34f},
             {0.16f, 0.13f, 0.10f},

@@ -98,16 +98,16 @@ class StemMesher {
 
   void placeRings() {
     const auto& points = stem_.points;
-    const float base_radius = points[0].radius;
-    const float repeats = std::max(1.0f, std::round(kTwoPi * 0.8f * base_radius / bark_width_));
-    // Above the flare the bark keeps its proportions; towards the tip it would shrink without end.
+    // Flare and splits change neither the count nor the scale: clones go on like their original.
     const float usual = stem_.radius;
-    float v = stem_.start / std::max(kTwoPi * usual, 1e-4f);
+    const float repeats = std::max(1.0f, std::round(kTwoPi * usual / bark_width_));
+    float v = stem_.start * repeats / (kTwoPi * usual);
     const auto sides = static_cast<std::uint32_t>(extent_.sides);
     for (std::size_t i = 0; i < rings(); ++i) {
       const float radius = points[i].radius;
       if (i > 0) {
         const float mean = 0.5f * (radius + points[i - 1].radius);
+        // Towards the tip the bark would shrink without end.
         const float around = kTwoPi * std::max(mean, 0.45f * usual);
         v += glm::length(points[i].position - points[i - 1].position) * repeats / around;
       }

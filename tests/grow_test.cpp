@@ -360,9 +360,38 @@ TEST(Grow, NamesWhatIsWrong) {
     EXPECT_NE(with(name, value).find(" to "), std::string::npos) << with(name, value);
   }
   EXPECT_THROW(speciesParameters("grass"), Error);
+  GrowOptions forest;
+  forest.set = {{"1Branches", "2000"}, {"2Branches", "2000"}};
+  EXPECT_NE(errorOf(forest).find("parameter 2Branches"), std::string::npos) << errorOf(forest);
   GrowOptions tiny;
   tiny.texture_size = 0;
   EXPECT_THROW(grow(tiny), Error);
+}
+
+TEST(Grow, StaysSoundAtTheEdgesOfItsRanges) {
+  using Set = std::vector<std::pair<std::string, std::string>>;
+  for (const Set& set :
+       {Set{{"Levels", "1"}, {"Leaves", "300"}},
+        Set{{"Levels", "2"}, {"1SegSplits", "10"}, {"1Branches", "3"}},
+        Set{{"0Length", "0"}, {"1Length", "0"}}, Set{{"Scale", "0.05"}, {"Ratio", "0.0005"}},
+        Set{{"Scale", "200"}, {"Ratio", "0.5"}, {"1Branches", "5"}},
+        Set{{"0CurveV", "-90"}, {"1CurveV", "-180"}, {"2Branches", "2"}},
+        Set{{"PruneRatio", "1"}, {"PruneWidth", "0"}},
+        Set{{"AttractionUp", "-20"}, {"Leaves", "2"}},
+        Set{{"ZScale", "20"}, {"Lobes", "40"}, {"LobeDepth", "0.9"}},
+        Set{{"Shape", "8"}, {"PrunePowerLow", "10"}, {"PrunePowerHigh", "0.0001"}},
+        Set{{"0BaseSplits", "30"}, {"0SplitAngle", "180"}, {"Levels", "1"}}}) {
+    GrowOptions options;
+    options.texture_size = 16;
+    options.set = set;
+    const Plant plant = grow(options);
+    for (const Mesh& mesh : plant.meshes)
+      for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        ASSERT_TRUE(std::isfinite(glm::dot(mesh.positions[i], mesh.normals[i]))) << set[0].first;
+        ASSERT_NEAR(glm::length(mesh.normals[i]), 1, 1e-3) << set[0].first;
+      }
+    EXPECT_FALSE(plant.branches.empty());
+  }
 }
 
 TEST(Grow, PutsLeavesInAFan) {

@@ -8,6 +8,13 @@
 namespace verdure::growth {
 namespace {
 
+/// The direction halfway between two; `b` where they are opposite.
+glm::vec3 halfway(const glm::vec3& a, const glm::vec3& b) {
+  const glm::vec3 sum = a + b;
+  const float size = glm::length(sum);
+  return size > 1e-3f ? sum / size : b;
+}
+
 /// A node of a stem's curve: where it bends and splits.
 struct Node {
   glm::vec3 position{0.0f};
@@ -94,7 +101,7 @@ class StemGrower {
       } else {
         next.in = bend(nodes.back().out, i, straighten, random);
       }
-      glm::vec3 step = glm::normalize(alongOf(nodes.back().out) + alongOf(next.in));
+      glm::vec3 step = halfway(alongOf(nodes.back().out), alongOf(next.in));
       step.y *= tree_.z_scale;
       next.position = nodes.back().position + segment_length_ * step;
       next.out = next.in;
@@ -177,7 +184,7 @@ class StemGrower {
     stem.parent_length = bud_.parent_length;
 
     const auto tangent = [&](const Node& node) {
-      return glm::normalize(alongOf(node.in) + alongOf(node.out));
+      return halfway(alongOf(node.in), alongOf(node.out));
     };
     for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
       const Node& a = nodes[i];

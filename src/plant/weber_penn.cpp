@@ -1,5 +1,7 @@
 #include "plant/weber_penn.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -7,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "plant/stem_growth.h"
+#include "verdure/error.h"
 
 namespace verdure {
 namespace {
@@ -183,6 +186,15 @@ Tree makeTree(const TreeParameters& p, std::uint64_t seed) {
   return tree;
 }
 
+/// Throws Error if `parents` stems with `each` children would be more than any plant needs.
+void checkCount(std::size_t parents, float each, const std::string& name) {
+  constexpr double kMost = 3e6;
+  const double count = static_cast<double>(parents) * static_cast<double>(each);
+  if (count > kMost)
+    throw Error("parameter " + name, fmt::format("asks for up to {:.0f} of them", count),
+                fmt::format("keep the whole tree below {:.0f}, by this or a lower level", kMost));
+}
+
 }  // namespace
 
 Skeleton growSkeleton(const TreeParameters& p, std::uint64_t seed) {
@@ -210,6 +222,7 @@ Skeleton growSkeleton(const TreeParameters& p, std::uint64_t seed) {
   std::size_t begin = 0;
   for (int level = 1; level < static_cast<int>(p.levels); ++level) {
     const std::size_t end = stems.size();
+    checkCount(end - begin, p.at(level).branches, std::to_string(level) + "Branches");
     std::vector<std::vector<Bud>> buds(end - begin);
     parallelFor(end - begin, 16, [&](std::size_t i) {
       buds[i] = budsOf(tree, stems[begin + i], static_cast<std::uint32_t>(begin + i));
@@ -223,6 +236,7 @@ Skeleton growSkeleton(const TreeParameters& p, std::uint64_t seed) {
     begin = end;
   }
 
+  checkCount(stems.size() - begin, std::abs(p.leaves) * p.leaf_quality, "Leaves");
   std::vector<std::vector<LeafPlace>> leaves(stems.size() - begin);
   parallelFor(leaves.size(), 32, [&](std::size_t i) {
     leaves[i] = leavesOf(tree, stems[begin + i], static_cast<std::uint32_t>(begin + i));

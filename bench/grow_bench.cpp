@@ -20,7 +20,7 @@ const Species& speciesOf(const benchmark::State& state) {
 std::size_t shape(const Species& species, const TreeParameters& parameters) {
   const Skeleton skeleton = growSkeleton(parameters, 1);
   Plant plant;
-  plant.meshes.push_back(meshStems(skeleton, parameters, species.bark.width_m));
+  plant.meshes.push_back(meshStems(skeleton, parameters, species.bark.width_m, 0.0f, 1e9f));
   plant.meshes.push_back(meshLeaves(skeleton,
                                     static_cast<LeafShape>(static_cast<int>(parameters.leaf_shape)),
                                     species.blade, LeafForm::kMesh, 1, plant));

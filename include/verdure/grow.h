@@ -19,9 +19,10 @@ struct GrowOptions {
   std::uint32_t seed = 1;
   LeafForm leaf_form = LeafForm::kMesh;
   /// Overrides of the species' parameters, by the paper's names: {"Levels", "3"},
-  /// {"1CurveV", "40"}. Angles in degrees, lengths in metres, as in the paper.
+  /// {"1CurveV", "40"}. Angles in degrees, lengths in metres, as in the paper. Added to them:
+  /// LeafBend, LeafDistrib and LeafQuality (constants in the paper's text).
   std::vector<std::pair<std::string, std::string>> set;
-  int texture_size = 512;  ///< side of the generated bark and leaf textures, pixels
+  int texture_size = 512;  ///< side of the bark and leaf textures, pixels; even, 16 to 8192
 };
 
 /// Grows a tree by the model of Weber and Penn, "Creation and Rendering of Realistic Trees",
@@ -29,6 +30,11 @@ struct GrowOptions {
 /// textures are filled in. The same options give the same plant on every machine with the same
 /// floating-point arithmetic, for any number of threads. Throws Error for an unknown species or
 /// parameter, or a value out of range.
+///
+/// Meshes, each with a material of its name: "bark" (wood), "leaf" (foliage; none when Leaves is 0)
+/// and, for species whose young wood has another colour, "twig" (wood). Each stem is a closed
+/// surface in one of the wood meshes; each leaf is one connected piece. A clone (split) is a branch
+/// of its own, of the same level as the stem it leaves.
 Plant grow(const GrowOptions& options);
 
 struct SpeciesInfo {

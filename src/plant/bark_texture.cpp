@@ -24,7 +24,7 @@ float ramp(float x, float low, float high) {
 float marks(float u, float v, int nu, int nv, float share, float fill, float aspect,
             std::uint32_t seed) {
   const float x = u * static_cast<float>(nu), y = v * static_cast<float>(nv);
-  const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
+  const int x0 = floorOf(x), y0 = floorOf(y);
   float most = 0;
   for (int j = -1; j <= 1; ++j)
     for (int i = -1; i <= 1; ++i) {
@@ -33,7 +33,9 @@ float marks(float u, float v, int nu, int nv, float share, float fill, float asp
       const float size = 0.35f + 0.65f * latticeValue(cx, cy, seed + 1);
       const float dx = x - static_cast<float>(x0 + i) - latticeValue(cx, cy, seed + 2);
       const float dy = y - static_cast<float>(y0 + j) - latticeValue(cx, cy, seed + 3);
-      const float d = std::hypot(dx / (fill * size), dy / (aspect * (0.5f + 0.5f * size)));
+      const float ex = dx / (fill * size), ey = dy / (aspect * (0.5f + 0.5f * size));
+      const float d = std::sqrt(ex * ex + ey * ey);
+      if (d >= 1) continue;
       most = std::max(most, 1 - ramp(d, 0.55f, 1.0f));
     }
   return most;
@@ -70,38 +72,33 @@ Texel paper(const BarkLook& look, float u, float v, std::uint32_t seed) {
           color};
 }
 
-Texel furrows(const BarkLook& look, float u, float v, std::uint32_t seed) {
-  // Ridges that part and meet: the furrows are zero lines of noise stretched along the stem.
-  const float warp_u = 0.07f * (fractalNoise(u, v, 5, 4, 3, seed) - 0.5f);
-  const float warp_v = 0.05f * (fractalNoise(u, v, 6, 5, 2, seed + 5) - 0.5f);
-  const auto lines = [&](int nu, int nv, std::uint32_t s) {
-    return std::abs(2 * valueNoise(u + warp_u, v + warp_v, nu, nv, s) - 1);
-  };
-  const float broad = std::min(lines(11, 3, seed + 10), 0.12f + lines(15, 5, seed + 11));
-  const float fine = fractalNoise(u + 0.5f * warp_u, v, 32, 12, 4, seed + 20);
-  const float crack = fractalNoise(u + warp_u, v + warp_v, 12, 26, 3, seed + 30);
-  const float ridge = ramp(broad + 0.2f * (fine - 0.5f), 0.0f, 0.34f);
-  const float split = ramp(crack, 0.6f, 0.7f);
-  const float height =
-      std::clamp(0.75f * ridge * (1 - 0.4f * split) + 0.4f * (fine - 0.35f), 0.0f, 1.0f);
-  const float lichen = ramp(fractalNoise(u, v, 4, 4, 4, seed + 40), 0.54f, 0.72f) * ridge;
-  glm::vec3 color = glm::mix(look.deep, look.color, ramp(height, 0.0f, 0.7f));
-  color = glm::mix(color, look.tint, 0.6f * lichen);
-  color *= 0.8f + 0.36f * fine;
-  return {height, color};
-}
-
-Texel blocks(const BarkLook& look, float u, float v, std::uint32_t seed) {
-  const float warp_u = 0.05f * (fractalNoise(u, v, 6, 6, 3, seed) - 0.5f);
-  const float warp_v = 0.05f * (fractalNoise(u, v, 6, 6, 3, seed + 5) - 0.5f);
-  const Cell cell = cellNoise(u + warp_u, v + warp_v, 8, 6, seed + 10);
-  const float fine = fractalNoise(u, v, 28, 24, 4, seed + 20);
-  const float block = ramp(cell.border + 0.16f * (fine - 0.5f), 0.03f, 0.3f);
-  const float height =
-      std::clamp(block * (0.7f + 0.2f * cell.value) + 0.22f * (fine - 0.4f), 0.0f, 1.0f);
-  glm::vec3 color = glm::mix(look.deep, look.color, ramp(height, 0.05f, 0.7f));
-  color = glm::mix(color, look.tint, 0.5f * ramp(cell.value, 0.55f, 0.9f) * block);
-  color *= 0.8f + 0.34f * fine;
+/// Rough bark: `ridges` wandering ridges side by side, each cracked across into about `pieces`
+/// pieces. `crack_depth` in [0, 1]: how far the cracks go down against the furrows.
+Texel ridged(const BarkLook& look, float u, float v, int ridges, int pieces, float crack_depth,
+             std::uint32_t seed) {
+  const float fine = fractalNoise(u, v, 36, 16, 4, seed + 20);
+  const float wander = 2.4f * (fractalNoise(u, v, 3, 4, 4, seed) - 0.5f);
+  const float phase = u * static_cast<float>(ridges) + wander;
+  const int ridge = floorOf(phase);
+  const float x = phase - static_cast<float>(ridge);
+  const int id = wrap(ridge, ridges);
+  // Cracks lean, wander, and sit at other heights on each ridge.
+  const float lean = 0.7f * (latticeValue(id, 1, seed + 5) - 0.5f) * (x - 0.5f);
+  const float q = v * static_cast<float>(pieces) + latticeValue(id, 0, seed + 6) + lean +
+                  0.9f * (fractalNoise(u, v, 5, 9, 3, seed + 7) - 0.5f);
+  const int piece = floorOf(q);
+  const float y = q - static_cast<float>(piece);
+  const float value = latticeValue(id, wrap(piece, pieces), seed + 8);
+  const float width = 0.3f + 0.4f * valueNoise(u, v, 4, 4, seed + 9);  // of the furrows
+  const float rough = 0.5f * (fine - 0.5f);
+  const float off_furrow = ramp(2 * std::min(x, 1 - x) + rough, 0.0f, width);
+  const float off_crack = ramp(2 * std::min(y, 1 - y) + rough, 0.0f, 0.3f);
+  const float top = off_furrow * (1 - crack_depth * (1 - off_crack));
+  const float height = std::clamp(top * (0.62f + 0.2f * value) + 0.5f * (fine - 0.4f), 0.0f, 1.0f);
+  const float lichen = ramp(fractalNoise(u, v, 4, 4, 4, seed + 40), 0.54f, 0.72f) * top;
+  glm::vec3 color = glm::mix(look.deep, look.color, ramp(height, 0.0f, 0.62f));
+  color = glm::mix(color, look.tint, 0.55f * std::max(lichen, 0.6f * value * top));
+  color *= 0.76f + 0.42f * fine;
   return {height, color};
 }
 
@@ -129,12 +126,12 @@ Texel plates(const BarkLook& look, float u, float v, std::uint32_t seed) {
 
 Texel smooth(const BarkLook& look, float u, float v, std::uint32_t seed) {
   const float warp = 0.06f * (fractalNoise(u, v, 3, 2, 3, seed) - 0.5f);
-  const float stripes = fractalNoise(u + warp, v, 14, 2, 4, seed + 10);
+  const float stripes = fractalNoise(u + warp, v, 22, 2, 4, seed + 10);
   const float broad = fractalNoise(u, v, 3, 3, 4, seed + 20);
   const float fine = fractalNoise(u, v, 40, 40, 3, seed + 30);
   const float pores = marks(u, v, 16, 26, 0.3f, 0.3f, 0.16f, seed + 40);
   glm::vec3 color = glm::mix(look.color, look.tint, ramp(broad, 0.45f, 0.7f));
-  color = glm::mix(color, look.deep, 0.7f * ramp(stripes, 0.5f, 0.72f));
+  color = glm::mix(color, look.deep, 0.5f * ramp(stripes, 0.45f, 0.75f));
   color = glm::mix(color, look.deep, 0.45f * pores);
   color *= 0.88f + 0.22f * fine;
   return {0.5f + 0.2f * (0.5f - stripes) + 0.12f * fine + 0.12f * pores, color};
@@ -154,9 +151,9 @@ BarkTexture makeBark(const BarkLook& look, int size, std::uint32_t seed) {
       case BarkKind::kPaper:
         return paper(look, u, v, seed);
       case BarkKind::kFurrows:
-        return furrows(look, u, v, seed);
+        return ridged(look, u, v, 10, 5, 0.5f, seed);
       case BarkKind::kBlocks:
-        return blocks(look, u, v, seed);
+        return ridged(look, u, v, 9, 12, 0.9f, seed);
       case BarkKind::kPlates:
         return plates(look, u, v, seed);
       default:

@@ -1,6 +1,7 @@
 #include "verdure/grow.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "plant/bark_texture.h"
@@ -43,26 +44,28 @@ Plant grow(const GrowOptions& options) {
 
   Plant plant;
   plant.name = options.species;
-  Skeleton skeleton = growSkeleton(parameters, options.seed);
-  plant.meshes.push_back(meshStems(skeleton, parameters, species.bark.width_m));
-  if (!skeleton.leaves.empty()) {
-    plant.meshes.push_back(meshLeaves(skeleton, shape, species.blade, options.leaf_form, 1, plant));
-    plant.meshes.back().material = 1;
-  }
-  plant.branches = branchesOf(skeleton.stems);
-
   // Bark and leaves look the same for all plants of a species: textures do not depend on the seed.
-  BarkTexture bark = makeBark(species.bark, options.texture_size, 1);
+  const auto pattern = static_cast<std::uint32_t>(&species - allSpecies().data()) + 1;
+  BarkTexture bark = makeBark(species.bark, options.texture_size, pattern);
   plant.textures.push_back({"bark", std::move(bark.color)});
   plant.textures.push_back({"bark normal", std::move(bark.normal)});
   Material wood;
   wood.name = "bark";
   wood.base_color_texture = 0;
   wood.normal_texture = 1;
-  plant.materials.push_back(wood);
+  const auto addMesh = [&plant](Mesh&& mesh, const Material& material) {
+    mesh.name = material.name;
+    mesh.material = static_cast<std::uint32_t>(plant.materials.size());
+    plant.materials.push_back(material);
+    plant.meshes.push_back(std::move(mesh));
+  };
+
+  Skeleton skeleton = growSkeleton(parameters, options.seed);
+  const float thin = species.twig_radius, any = std::numeric_limits<float>::max();
+  addMesh(meshStems(skeleton, parameters, species.bark.width_m, thin, any), wood);
   if (!skeleton.leaves.empty()) {
     Texture leaf{"leaf", makeLeafTexture(shape, species.leaf, parameters.leaf_scale_x,
-                                         options.texture_size, 1)};
+                                         options.texture_size, pattern)};
     leaf.clamp_u = leaf.clamp_v = true;
     plant.textures.push_back(std::move(leaf));
     Material foliage;
@@ -71,8 +74,19 @@ Plant grow(const GrowOptions& options) {
     foliage.alpha_mode = AlphaMode::kMask;
     foliage.alpha_cutoff = species.alpha_cutoff;
     foliage.double_sided = true;
-    plant.materials.push_back(foliage);
+    addMesh(meshLeaves(skeleton, shape, species.blade, options.leaf_form,
+                       static_cast<std::uint32_t>(plant.meshes.size()), plant),
+            foliage);
   }
+  // Young wood of species with pale bark has another colour.
+  Mesh twigs = meshStems(skeleton, parameters, species.bark.width_m, 0.0f, thin);
+  if (!twigs.indices.empty()) {
+    Material young = wood;
+    young.name = "twig";
+    young.base_color = glm::vec4(species.twig_tint, 1.0f);
+    addMesh(std::move(twigs), young);
+  }
+  plant.branches = branchesOf(skeleton.stems);
   return plant;
 }
 

@@ -18,6 +18,8 @@ struct Species {
   LeafLook leaf;
   BladeForm blade;
   float alpha_cutoff = 0.5f;
+  float twig_radius = 0;      ///< m: thinner stems are young wood; 0 = none
+  glm::vec3 twig_tint{1.0f};  ///< linear: multiplies the bark's colour for young wood
 };
 
 /// All species, in the order of speciesList().

@@ -98,16 +98,16 @@ class StemMesher {
 
   void placeRings() {
     const auto& points = stem_.points;
-    const float base_radius = points[0].radius;
-    const float repeats = std::max(1.0f, std::round(kTwoPi * 0.8f * base_radius / bark_width_));
-    // Above the flare the bark keeps its proportions; towards the tip it would shrink without end.
+    // Flare and splits change neither the count nor the scale: clones go on like their original.
     const float usual = stem_.radius;
-    float v = stem_.start / std::max(kTwoPi * usual, 1e-4f);
+    const float repeats = std::max(1.0f, std::round(kTwoPi * usual / bark_width_));
+    float v = stem_.start * repeats / (kTwoPi * usual);
     const auto sides = static_cast<std::uint32_t>(extent_.sides);
     for (std::size_t i = 0; i < rings(); ++i) {
       const float radius = points[i].radius;
       if (i > 0) {
         const float mean = 0.5f * (radius + points[i - 1].radius);
+        // Towards the tip the bark would shrink without end.
         const float around = kTwoPi * std::max(mean, 0.45f * usual);
         v += glm::length(points[i].position - points[i - 1].position) * repeats / around;
       }
@@ -180,35 +180,41 @@ class StemMesher {
 
 }  // namespace
 
-Mesh meshStems(const Skeleton& skeleton, const TreeParameters& parameters, float bark_width) {
+Mesh meshStems(const Skeleton& skeleton, const TreeParameters& parameters, float bark_width,
+               float min_radius, float max_radius) {
   const std::vector<Stem>& stems = skeleton.stems;
-  std::vector<Extent> extents(stems.size());
+  std::vector<std::uint32_t> chosen;
+  std::vector<Extent> extents;
   std::uint32_t vertices = 0, indices = 0;
   for (std::size_t i = 0; i < stems.size(); ++i) {
     const Stem& stem = stems[i];
-    Extent& e = extents[i];
-    e.sides = sidesOf(stem.points[0].radius);
+    const float radius = stem.points[0].radius;
+    if (radius < min_radius || radius >= max_radius) continue;
+    Extent e;
+    e.sides = sidesOf(radius);
     if (stem.level == 0)
       e.sides = std::max(e.sides, std::min(32, 4 * static_cast<int>(parameters.lobes)));
     // A stem that tapers to (almost) nothing ends in the cap's point instead of a ring.
-    const bool pointed = stem.points.back().radius < 0.05f * stem.points[0].radius;
+    const bool pointed = stem.points.back().radius < 0.05f * radius;
     e.rings = static_cast<std::uint32_t>(stem.points.size()) - (pointed ? 1 : 0);
     e.first_vertex = vertices;
     e.first_index = indices;
     vertices += e.vertices();
     indices += e.indices();
+    chosen.push_back(static_cast<std::uint32_t>(i));
+    extents.push_back(e);
   }
   Mesh mesh;
-  mesh.name = "wood";
   mesh.kind = PartKind::kWood;
   mesh.positions.resize(vertices);
   mesh.normals.resize(vertices);
   mesh.uvs.resize(vertices);
   mesh.branch_of_vertex.resize(vertices);
   mesh.indices.resize(indices);
-  parallelFor(stems.size(), 64, [&](std::size_t i) {
-    const bool trunk = stems[i].level == 0;
-    StemMesher(stems[i], static_cast<std::uint32_t>(i), extents[i], trunk ? parameters.lobes : 0.0f,
+  parallelFor(chosen.size(), 64, [&](std::size_t i) {
+    const Stem& stem = stems[chosen[i]];
+    const bool trunk = stem.level == 0;
+    StemMesher(stem, chosen[i], extents[i], trunk ? parameters.lobes : 0.0f,
                trunk ? parameters.lobe_depth : 0.0f, bark_width, mesh)
         .build();
   });

@@ -8,9 +8,11 @@
 
 namespace verdure {
 
-/// All stems as closed generalised cylinders with rounded tips. U runs around a stem a whole number
-/// of times, V along it so that a texture `bark_width` metres wide keeps its proportions.
-Mesh meshStems(const Skeleton& skeleton, const TreeParameters& parameters, float bark_width);
+/// Stems as closed generalised cylinders with rounded tips: those whose radius at the base lies in
+/// [min_radius, max_radius), m. U runs around a stem a whole number of times, V along it so that a
+/// texture `bark_width` metres wide keeps its proportions.
+Mesh meshStems(const Skeleton& skeleton, const TreeParameters& parameters, float bark_width,
+               float min_radius, float max_radius);
 
 /// How blades are bent.
 struct BladeForm {

@@ -1,330 +1,20 @@
 #include "plant/weber_penn.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "base/check.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "plant/stem_growth.h"
+#include "verdure/error.h"
 
 namespace verdure {
 namespace {
 
-constexpr float kPi = 3.14159265358979f;
-const glm::vec3 kUp(0, 1, 0);
-/// Radii stay above this, m, so that no ring of a stem's mesh shrinks to a point.
-constexpr float kThinnest = 1e-5f;
-
-float radiansOf(float degrees) {
-  return degrees * (kPi / 180.0f);
-}
-
-glm::quat aboutX(float angle) {
-  return glm::angleAxis(angle, glm::vec3(1, 0, 0));
-}
-glm::quat aboutY(float angle) {
-  return glm::angleAxis(angle, glm::vec3(0, 1, 0));
-}
-glm::quat aboutZ(float angle) {
-  return glm::angleAxis(angle, glm::vec3(0, 0, 1));
-}
-glm::vec3 alongOf(const glm::quat& frame) {
-  return frame * glm::vec3(0, 0, 1);
-}
-
-float declination(const glm::vec3& direction) {
-  return std::acos(std::clamp(direction.y, -1.0f, 1.0f));
-}
-
-/// A stem before it grows.
-struct Bud {
-  std::uint32_t parent = kNone;
-  int level = 0;
-  float offset = 0, parent_length = 1;
-  glm::vec3 position{0.0f};
-  glm::quat frame{};
-  float length = 0, length_share = 1, radius = 0;
-  std::uint64_t stream = 0;
-};
-
-/// What all stems of one tree share.
-struct Tree {
-  const TreeParameters& p;
-  float height = 0;  ///< scale_tree of the paper
-  float z_scale = 1;
-  float trunk_scale = 1;
-  float trunk_length = 0;
-  float base_length = 0;
-
-  float radiusAt(const Stem& stem, float along) const {
-    const float z = std::clamp(along / stem.length, 0.0f, 1.0f);
-    float r = taperedRadius(p.at(stem.level).taper, z, stem.radius, stem.length);
-    if (stem.level == 0) r *= trunk_scale * flareFactor(p.flare, z);
-    return std::max(r, kThinnest);
-  }
-  /// Length of a stem at the foot that carries no children, m.
-  float bareLength(const Stem& stem) const { return stem.level == 0 ? base_length : 0.0f; }
-};
-
-/// A node of a stem's curve: where it bends and splits.
-struct Node {
-  glm::vec3 position{0.0f};
-  glm::quat in{}, out{};
-};
-
-/// Grows one stem and its clones (the original first). All random numbers come from bud.stream, so
-/// that growing it again with another length keeps its form.
-class StemGrower {
- public:
-  StemGrower(const Tree& tree, const Bud& bud, float length)
-      : tree_(tree), bud_(bud), level_(tree.p.at(bud.level)), length_(length) {
-    segments_ = static_cast<int>(level_.curve_res);
-    // A helix needs a few segments a turn whatever CurveRes says.
-    if (level_.curve_v < 0) segments_ = std::max(segments_, 8);
-    segment_length_ = length_ / static_cast<float>(segments_);
-  }
-
-  std::vector<Stem> grow() {
-    Random random(bud_.stream);
-    const float first_error = random.uniform(-0.5f, 0.5f);
-    Node first;
-    first.position = bud_.position;
-    first.in = first.out = bud_.frame;
-    extend(kNone, 0, first, bud_.frame, 0.0f, first_error, bud_.stream);
-    return std::move(stems_);
-  }
-
- private:
-  float curveOf(int segment) const {
-    const float half = 0.5f * static_cast<float>(segments_);
-    if (level_.curve_back == 0.0f) return level_.curve / static_cast<float>(segments_);
-    return (static_cast<float>(segment) + 0.5f < half ? level_.curve : level_.curve_back) / half;
-  }
-
-  /// Frame at the end of a segment. `straighten`: the part of an earlier split's angle that each
-  /// following segment gives back.
-  glm::quat bend(const glm::quat& frame, int segment, float straighten, Random& random) const {
-    const float variation = std::max(level_.curve_v, 0.0f) / static_cast<float>(segments_);
-    // The paper varies the bend about x alone, which leaves each stem in one plane; half of the
-    // variation goes to y as well.
-    const float x = radiansOf(curveOf(segment) + random.vary(variation)) - straighten;
-    const float y = radiansOf(random.vary(0.5f * variation));
-    glm::quat next = frame * aboutX(x) * aboutY(y);
-    if (bud_.level >= 2 && tree_.p.attraction_up != 0.0f) {
-      // Vertical attraction: the paper's turn about x, AttractionUp * declination *
-      // cos(orientation) / CurveRes, is the x part of this vector.
-      const glm::vec3 along = alongOf(next);
-      const glm::vec3 turn = glm::cross(along, kUp) * (tree_.p.attraction_up * declination(along) /
-                                                       static_cast<float>(segments_));
-      const float angle = glm::length(turn);
-      if (angle > 1e-6f) {
-        // Never beyond the vertical.
-        const float limit =
-            tree_.p.attraction_up > 0 ? declination(along) : kPi - declination(along);
-        next = glm::angleAxis(std::min(angle, limit), turn / angle) * next;
-      }
-    }
-    return glm::normalize(next);
-  }
-
-  /// Frame of a helical stem (nCurveV < 0): one turn about the stem's axis, at a slope of
-  /// |nCurveV|.
-  glm::quat helix(const glm::quat& axis, int node) const {
-    const float turn = 2 * kPi * static_cast<float>(node) / static_cast<float>(segments_);
-    return axis * aboutZ(turn) * aboutX(radiansOf(-level_.curve_v)) * aboutZ(-turn);
-  }
-
-  /// Grows from node `first_index` to the tip.
-  void extend(std::uint32_t original, int first_index, const Node& first,
-              const glm::quat& first_axis, float straighten, float error, std::uint64_t stream) {
-    const auto self = static_cast<std::uint32_t>(stems_.size());
-    VERDURE_CHECK_LT(stems_.size(), std::size_t{100000});
-    stems_.emplace_back();
-    Random random(hash(stream ^ 0x73746d65ull));
-    std::vector<Node> nodes{first};
-    glm::quat axis = first_axis;  // of a helix
-    if (level_.curve_v < 0) nodes[0].out = helix(axis, first_index);
-    for (int i = first_index; i < segments_; ++i) {
-      Node next;
-      if (level_.curve_v < 0) {
-        axis = bend(axis, i, straighten, random);
-        next.in = helix(axis, i + 1);
-      } else {
-        next.in = bend(nodes.back().out, i, straighten, random);
-      }
-      glm::vec3 step = glm::normalize(alongOf(nodes.back().out) + alongOf(next.in));
-      step.y *= tree_.z_scale;
-      next.position = nodes.back().position + segment_length_ * step;
-      next.out = next.in;
-      if (i + 1 < segments_) {
-        const int splits = splitsAt(i, error);
-        if (splits > 0) split(self, i + 1, splits, next, axis, straighten, error, stream, random);
-      }
-      nodes.push_back(next);
-    }
-    finish(stems_[self], nodes, first_index, original, stream);
-  }
-
-  /// Number of clones after a segment; spreads fractions over segments (Floyd and Steinberg's error
-  /// diffusion, as in the paper, but along each stem, so that stems do not depend on each other).
-  int splitsAt(int segment, float& error) const {
-    if (bud_.level == 0 && segment == 0 && tree_.p.base_splits > 0)
-      return static_cast<int>(tree_.p.base_splits);
-    if (level_.seg_splits <= 0) return 0;
-    const float effective = std::max(0.0f, std::round(level_.seg_splits + error));
-    error -= effective - level_.seg_splits;
-    // Clones of clones grow without bound when each segment splits: stop at a sane number.
-    return stems_.size() > 200 ? 0 : static_cast<int>(effective);
-  }
-
-  void split(std::uint32_t self, int index, int splits, Node& node, glm::quat& axis,
-             float& straighten, float& error, std::uint64_t stream, Random& random) {
-    const bool helical = level_.curve_v < 0;
-    const glm::quat frame = helical ? axis : node.in;
-    const float tilt = declination(alongOf(frame));
-    const auto angleOf = [&] {
-      return std::max(0.0f,
-                      radiansOf(level_.split_angle + random.vary(level_.split_angle_v)) - tilt);
-    };
-    const auto remaining = static_cast<float>(segments_ - index);
-    // Where the trunk divides the stems spread evenly about the vertical; elsewhere by the paper's
-    // 20 + 0.75 (30 + |declination - 90|) random^2 degrees, to either side.
-    const bool even = bud_.level == 0 && splits > 1;
-    const float first_turn = even ? random.uniform(0, 2 * kPi) : 0.0f;
-    for (int c = 1; c <= splits; ++c) {
-      const float angle = angleOf();
-      float turn;
-      if (even) {
-        turn = 2 * kPi * static_cast<float>(c) / static_cast<float>(splits + 1) +
-               random.vary(0.2f) + first_turn;
-      } else {
-        const float u = random.uniform();
-        turn = radiansOf(20 + 0.75f * (30 + std::abs(tilt * 180 / kPi - 90)) * u * u) *
-               static_cast<float>((c + 1) / 2);
-        if ((c % 2 == 0) != (random.next() % 2 == 0)) turn = -turn;
-      }
-      const glm::quat turned = glm::normalize(glm::angleAxis(turn, kUp) * frame * aboutX(angle));
-      Node clone = node;
-      clone.out = turned;
-      extend(self, index, clone, turned, straighten + angle / remaining, error,
-             hash(stream + 0x9177ull * static_cast<std::uint64_t>(index * 64 + c)));
-    }
-    const float angle = angleOf();
-    const glm::quat own = glm::normalize(glm::angleAxis(first_turn, kUp) * frame * aboutX(angle));
-    straighten += angle / remaining;
-    if (helical) {
-      axis = own;
-    } else {
-      node.out = own;
-    }
-  }
-
-  /// Turns nodes into a smooth polyline (cubic Hermite segments) with radii and frames.
-  void finish(Stem& stem, const std::vector<Node>& nodes, int first_index, std::uint32_t original,
-              std::uint64_t stream) const {
-    stem.level = bud_.level;
-    stem.length = length_;
-    stem.length_share = bud_.length_share;
-    stem.radius = bud_.radius;
-    stem.stream = stream;
-    stem.start = static_cast<float>(first_index) * segment_length_;
-    // Clones hang on the stem they left; indices are local to the group until it is appended.
-    stem.parent = original;
-    stem.parent_along = original == kNone ? bud_.offset : stem.start;
-    stem.offset = bud_.offset;
-    stem.parent_length = bud_.parent_length;
-
-    const auto tangent = [&](const Node& node) {
-      return glm::normalize(alongOf(node.in) + alongOf(node.out));
-    };
-    for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
-      const Node& a = nodes[i];
-      const Node& b = nodes[i + 1];
-      // A clone's first tangent is its original's, so that their surfaces start as one.
-      const glm::vec3 ta = i == 0 && original != kNone ? alongOf(a.in) : tangent(a);
-      const glm::vec3 tb = tangent(b);
-      const float chord = glm::length(b.position - a.position);
-      const float from = stem.start + static_cast<float>(i) * segment_length_;
-      for (const float t : samples(from, std::acos(std::clamp(glm::dot(ta, tb), -1.0f, 1.0f)))) {
-        const float t2 = t * t, t3 = t2 * t;
-        BranchPoint point;
-        point.position = (2 * t3 - 3 * t2 + 1) * a.position + (t3 - 2 * t2 + t) * chord * ta +
-                         (3 * t2 - 2 * t3) * b.position + (t3 - t2) * chord * tb;
-        const float along = from + t * segment_length_;
-        point.radius = tree_.radiusAt(stem, along);
-        stem.points.push_back(point);
-        stem.along.push_back(along);
-        stem.frames.push_back(glm::slerp(a.out, b.in, t));
-      }
-    }
-    stem.points.push_back({nodes.back().position, tree_.radiusAt(stem, length_)});
-    stem.along.push_back(length_);
-    stem.frames.push_back(nodes.back().in);
-  }
-
-  /// Where to cut the segment that begins at `from` (m): 0 and as many more as its bend, its flare
-  /// and its taper ask for.
-  std::vector<float> samples(float from, float bend_angle) const {
-    const float radius = tree_.p.at(bud_.level).taper < 1
-                             ? bud_.radius
-                             : bud_.radius * std::max(0.1f, 1 - from / length_);
-    float step = radiansOf(radius > 0.02f ? 9.0f : radius > 0.005f ? 16.0f : 30.0f);
-    int count = std::clamp(static_cast<int>(std::ceil(bend_angle / step)), 1, 8);
-    if (bud_.level == 0) count = std::max(count, 3);
-    if (level_.taper > 1.0f) {
-      // Rounded ends and rows of spheres: a cut every third of a radius where the radius changes.
-      const bool periodic = level_.taper > 2.0f;
-      if (periodic || from + segment_length_ > length_ - 1.5f * bud_.radius)
-        count = std::clamp(static_cast<int>(segment_length_ / (0.3f * bud_.radius)), count, 64);
-    }
-    std::vector<float> t;
-    for (int k = 0; k < count; ++k) t.push_back(static_cast<float>(k) / static_cast<float>(count));
-    if (bud_.level == 0 && tree_.p.flare > 0)
-      for (const float z : {0.006f, 0.015f, 0.028f, 0.045f, 0.065f, 0.095f, 0.125f}) {
-        const float at = (z * length_ - from) / segment_length_;
-        if (at > 0.0f && at < 1.0f) t.push_back(at);
-      }
-    std::sort(t.begin(), t.end());
-    t.erase(std::unique(t.begin(), t.end(), [](float a, float b) { return b - a < 0.004f; }),
-            t.end());
-    return t;
-  }
-
-  const Tree& tree_;
-  const Bud& bud_;
-  const LevelParameters& level_;
-  float length_;
-  int segments_ = 1;
-  float segment_length_ = 0;
-  std::vector<Stem> stems_;
-};
-
-bool inside(const Tree& tree, const std::vector<Stem>& group) {
-  for (const Stem& stem : group)
-    for (const BranchPoint& point : stem.points)
-      if (!insideEnvelope(tree.p, tree.height, tree.z_scale, point.position)) return false;
-  return true;
-}
-
-/// Grows a stem with its clones, pruned. Empty if pruning leaves nothing.
-std::vector<Stem> growGroup(const Tree& tree, const Bud& bud) {
-  float length = bud.length;
-  if (length < 1e-4f) return {};
-  std::vector<Stem> group = StemGrower(tree, bud, length).grow();
-  if (bud.level == 0 || tree.p.prune_ratio <= 0 || inside(tree, group)) return group;
-  // The paper: shorten and grow again with the same random numbers until the stem fits.
-  float fit = length;
-  for (int i = 0; i < 40; ++i) {
-    fit *= 0.9f;
-    group = StemGrower(tree, bud, fit).grow();
-    if (inside(tree, group)) break;
-    if (i == 39) fit = 0;
-  }
-  if (tree.p.prune_ratio >= 1) return fit > 0 ? std::move(group) : std::vector<Stem>{};
-  length += tree.p.prune_ratio * (fit - length);
-  return StemGrower(tree, bud, length).grow();
-}
+using namespace growth;
 
 /// Place and frame at `along` metres on a stem.
 std::pair<glm::vec3, glm::quat> placeOn(const Stem& stem, float along) {
@@ -496,57 +186,16 @@ Tree makeTree(const TreeParameters& p, std::uint64_t seed) {
   return tree;
 }
 
+/// Throws Error if `parents` stems with `each` children would be more than any plant needs.
+void checkCount(std::size_t parents, float each, const std::string& name) {
+  constexpr double kMost = 3e6;
+  const double count = static_cast<double>(parents) * static_cast<double>(each);
+  if (count > kMost)
+    throw Error("parameter " + name, fmt::format("asks for up to {:.0f} of them", count),
+                fmt::format("keep the whole tree below {:.0f}, by this or a lower level", kMost));
+}
+
 }  // namespace
-
-float shapeRatio(int shape, float ratio, const TreeParameters& p) {
-  switch (shape) {
-    case 0:
-      return 0.2f + 0.8f * ratio;
-    case 1:
-      return 0.2f + 0.8f * std::sin(kPi * ratio);
-    case 2:
-      return 0.2f + 0.8f * std::sin(0.5f * kPi * ratio);
-    case 3:
-      return 1.0f;
-    case 4:
-      return 0.5f + 0.5f * ratio;
-    case 5:
-      return ratio <= 0.7f ? ratio / 0.7f : (1 - ratio) / 0.3f;
-    case 6:
-      return 1.0f - 0.8f * ratio;
-    case 7:
-      return ratio <= 0.7f ? 0.5f + 0.5f * ratio / 0.7f : 0.5f + 0.5f * (1 - ratio) / 0.3f;
-    default:
-      if (ratio < 0 || ratio > 1) return 0.0f;
-      return ratio < 1 - p.prune_width_peak
-                 ? std::pow(ratio / (1 - p.prune_width_peak), p.prune_power_high)
-                 : std::pow((1 - ratio) / p.prune_width_peak, p.prune_power_low);
-  }
-}
-
-float taperedRadius(float taper, float z, float radius, float length) {
-  const float unit = taper < 1 ? taper : taper < 2 ? 2 - taper : 0.0f;
-  const float cone = radius * (1 - unit * z);
-  if (taper < 1) return cone;
-  const float to_tip = (1 - z) * length;
-  const float depth = taper < 2 || to_tip < cone ? 1.0f : taper - 2;
-  const float in_sphere =
-      taper < 2 ? to_tip : std::abs(to_tip - 2 * cone * std::floor(to_tip / (2 * cone) + 0.5f));
-  if (taper < 2 && in_sphere >= cone) return cone;
-  const float h = in_sphere - cone;
-  return (1 - depth) * cone + depth * std::sqrt(std::max(cone * cone - h * h, 0.0f));
-}
-
-float flareFactor(float flare, float z) {
-  const float y = std::max(0.0f, 1 - 8 * z);
-  return flare * (std::pow(100.0f, y) - 1) / 100 + 1;
-}
-
-bool insideEnvelope(const TreeParameters& p, float height, float z_scale, const glm::vec3& point) {
-  const float across = std::sqrt(point.x * point.x + point.z * point.z) / height;
-  const float ratio = (height - point.y / z_scale) / (height * (1 - p.base_size));
-  return across < p.prune_width * shapeRatio(8, ratio, p);
-}
 
 Skeleton growSkeleton(const TreeParameters& p, std::uint64_t seed) {
   const Tree tree = makeTree(p, seed);
@@ -573,6 +222,7 @@ Skeleton growSkeleton(const TreeParameters& p, std::uint64_t seed) {
   std::size_t begin = 0;
   for (int level = 1; level < static_cast<int>(p.levels); ++level) {
     const std::size_t end = stems.size();
+    checkCount(end - begin, p.at(level).branches, std::to_string(level) + "Branches");
     std::vector<std::vector<Bud>> buds(end - begin);
     parallelFor(end - begin, 16, [&](std::size_t i) {
       buds[i] = budsOf(tree, stems[begin + i], static_cast<std::uint32_t>(begin + i));
@@ -586,6 +236,7 @@ Skeleton growSkeleton(const TreeParameters& p, std::uint64_t seed) {
     begin = end;
   }
 
+  checkCount(stems.size() - begin, std::abs(p.leaves) * p.leaf_quality, "Leaves");
   std::vector<std::vector<LeafPlace>> leaves(stems.size() - begin);
   parallelFor(leaves.size(), 32, [&](std::size_t i) {
     leaves[i] = leavesOf(tree, stems[begin + i], static_cast<std::uint32_t>(begin + i));

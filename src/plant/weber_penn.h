@@ -59,7 +59,8 @@ struct Skeleton {
   float z_scale = 1;
 };
 
-/// Grows stems and leaf places. The same for any number of threads.
+/// Grows stems and leaf places. The same for any number of threads. Throws Error for parameters
+/// that ask for millions of stems or leaves.
 Skeleton growSkeleton(const TreeParameters& parameters, std::uint64_t seed);
 
 /// Whether a point lies inside the pruning envelope of a tree `height` metres high.

@@ -1,0 +1,39 @@
+#ifndef VERDURE_GPU_BARRIER_H_
+#define VERDURE_GPU_BARRIER_H_
+
+#include "gpu/vulkan.h"
+
+namespace verdure::gpu {
+
+/// The ways verdure uses images and buffers on the GPU. A barrier between two of them is complete:
+/// stages, accesses and layouts all follow from the use.
+enum class Use {
+  kUndefined,        ///< contents may be lost; nothing is pending (fresh, or behind a fence)
+  kTransferTarget,   ///< copied to
+  kTransferSource,   ///< copied from
+  kColorAttachment,  ///< drawn to, blended or resolved to
+  kDepthAttachment,  ///< depth-tested and written
+  kFragmentSampled,  ///< sampled in a fragment shader
+  kVertexInput,      ///< vertex and index buffer
+  kComputeStorage,   ///< storage buffer of a compute shader, read and written
+  kHostRead,         ///< read on the CPU after a fence
+};
+
+struct UseInfo {
+  vk::PipelineStageFlags2 stages;
+  vk::AccessFlags2 access;
+  vk::ImageLayout layout;  ///< eUndefined for uses that only buffers have
+};
+
+UseInfo useInfo(Use use);
+
+/// All mips and layers of an image go from one use to another.
+void imageBarrier(const vk::raii::CommandBuffer& commands, vk::Image image,
+                  vk::ImageAspectFlags aspect, Use from, Use to);
+
+/// A whole buffer goes from one use to another.
+void bufferBarrier(const vk::raii::CommandBuffer& commands, vk::Buffer buffer, Use from, Use to);
+
+}  // namespace verdure::gpu
+
+#endif  // VERDURE_GPU_BARRIER_H_

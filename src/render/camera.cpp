@@ -1,0 +1,169 @@
+#include "render/camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <limits>
+#include <map>
+
+#include "base/parallel.h"
+#include "render/scene.h"
+#include "verdure/error.h"
+
+namespace verdure {
+namespace {
+
+/// Right, up and backward axes of a camera.
+glm::mat3 cameraAxes(const Camera& camera) {
+  const glm::vec3 back = glm::normalize(camera.eye - camera.target);
+  const glm::vec3 up = std::abs(back.y) > 0.9999f ? glm::vec3(0, 0, -1) : glm::vec3(0, 1, 0);
+  const glm::vec3 right = glm::normalize(glm::cross(up, back));
+  return {right, glm::cross(back, right), back};
+}
+
+/// The vertices of a plant that lie farthest in each of many directions: what a camera must show so
+/// that it shows all (to about 1 % of the size).
+std::vector<glm::vec3> outermostVertices(const Plant& plant) {
+  constexpr int kDirections = 256;
+  std::vector<glm::vec3> outermost(kDirections);
+  std::vector<float> reach(kDirections, std::numeric_limits<float>::lowest());
+  parallelFor(kDirections, 8, [&](std::size_t d) {
+    // Fibonacci lattice on the sphere.
+    const float y = 1.0f - (2.0f * static_cast<float>(d) + 1.0f) / kDirections;
+    const float turn = glm::two_pi<float>() * 0.61803399f * static_cast<float>(d);
+    const float ring = std::sqrt(1.0f - y * y);
+    const glm::vec3 direction(ring * std::cos(turn), y, ring * std::sin(turn));
+    for (const Mesh& mesh : plant.meshes)
+      for (const glm::vec3& p : mesh.positions)
+        if (const float along = glm::dot(p, direction); along > reach[d]) {
+          reach[d] = along;
+          outermost[d] = p;
+        }
+  });
+  if (vertexCount(plant) == 0) outermost.clear();
+  return outermost;
+}
+
+std::vector<glm::vec3> outermostPoints(const Scene& scene) {
+  std::map<const Plant*, std::vector<glm::vec3>> of_plant;
+  std::vector<glm::vec3> points;
+  for (const SceneItem& item : scene.items) {
+    if (item.plant == nullptr) throw Error("scene", "an item has no plant", "set SceneItem::plant");
+    const auto [entry, is_new] = of_plant.try_emplace(item.plant);
+    if (is_new) entry->second = outermostVertices(*item.plant);
+    for (const glm::mat4& instance : item.world_from_plant) {
+      const glm::mat4 world = worldFromPlant(scene, item, instance);
+      for (const glm::vec3& p : entry->second) points.emplace_back(world * glm::vec4(p, 1.0f));
+    }
+  }
+  return points;
+}
+
+/// Extent of points in a camera's image, as tangents of angles.
+struct ImageBox {
+  glm::vec2 min{std::numeric_limits<float>::max()};
+  glm::vec2 max{std::numeric_limits<float>::lowest()};
+  bool behind = false;  ///< a point is not in front of the eye
+};
+
+ImageBox imageBox(const Camera& camera, const std::vector<glm::vec3>& points) {
+  const glm::mat3 axes = cameraAxes(camera);
+  ImageBox box;
+  for (const glm::vec3& p : points) {
+    const glm::vec3 q = (p - camera.eye) * axes;
+    if (q.z >= -1e-6f * glm::length(p - camera.eye)) {
+      box.behind = true;
+      return box;
+    }
+    const glm::vec2 at = glm::vec2(q) / -q.z;
+    box.min = glm::min(box.min, at);
+    box.max = glm::max(box.max, at);
+  }
+  return box;
+}
+
+}  // namespace
+
+glm::vec3 directionOf(float azimuth, float elevation) {
+  return {std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+          std::cos(azimuth) * std::cos(elevation)};
+}
+
+void setCamera(shared::FrameUniforms& uniforms, const Camera& camera, float aspect) {
+  const float distance = glm::length(camera.eye - camera.target);
+  if (!(distance > 0.0f) || !std::isfinite(distance))
+    throw Error("camera", "eye and target are the same point or not finite", "move one of them");
+  if (!(camera.vertical_fov > 0.0f && camera.vertical_fov < glm::pi<float>()))
+    throw Error("camera", "the field of view is not between 0 and pi radians");
+  const glm::mat3 axes = cameraAxes(camera);
+  const float tan_half = std::tan(0.5f * camera.vertical_fov);
+  const float near = 0.002f * distance;
+  glm::mat4 view(glm::transpose(axes));
+  view[3] = glm::vec4(-(camera.eye * axes), 1.0f);
+  glm::mat4 projection(0.0f);
+  projection[0][0] = 1.0f / (tan_half * aspect);
+  projection[1][1] = -1.0f / tan_half;  // Vulkan's y points down
+  projection[2][3] = -1.0f;
+  projection[3][2] = near;
+  uniforms.clip_from_world = projection * view;
+  uniforms.eye = glm::vec4(camera.eye, 0.0f);
+  uniforms.ray_right = glm::vec4(axes[0] * tan_half * aspect, 0.0f);
+  uniforms.ray_down = glm::vec4(-axes[1] * tan_half, 0.0f);
+  uniforms.ray_forward = glm::vec4(-axes[2], 0.0f);
+}
+
+Camera automaticCamera(const Scene& scene, float azimuth, float elevation, float aspect,
+                       float vertical_fov) {
+  constexpr float kMargin = 0.9f;  // share of the image that the scene fills
+  Camera camera;
+  camera.vertical_fov = vertical_fov;
+  const std::vector<glm::vec3> points = outermostPoints(scene);
+  if (points.empty()) return camera;
+
+  glm::vec3 low = points[0], high = points[0];
+  for (const glm::vec3& p : points) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  const glm::vec3 center = 0.5f * (low + high);
+  const float radius = std::max(0.5f * glm::length(high - low), 1e-4f);
+  // At elevation 0 the eye is where a standing person's is, for plants of such size; lower for
+  // small plants, higher for giants.
+  const float height = high.y - low.y;
+  const float eye_height = std::min(std::max(1.7f, 0.125f * height), height / 3.0f);
+  const glm::vec3 direction = directionOf(azimuth, elevation);
+  const auto eyeAt = [&](float distance) {
+    const glm::vec3 flat(center.x, low.y + eye_height, center.z);
+    return flat + direction * distance;
+  };
+
+  const glm::vec2 half = glm::vec2(aspect, 1.0f) * std::tan(0.5f * vertical_fov) * kMargin;
+  // The target that centres the scene depends on the distance and the other way round: some rounds
+  // of both settle.
+  camera.target = center;
+  for (int round = 0; round < 4; ++round) {
+    float near = 0.0f, far = radius;
+    const auto fits = [&](float distance) {
+      Camera trial = camera;
+      trial.eye = eyeAt(distance);
+      if (glm::length(trial.eye - trial.target) < 1e-3f * radius) return false;
+      const ImageBox box = imageBox(trial, points);
+      const glm::vec2 size = 0.5f * (box.max - box.min);
+      return !box.behind && size.x <= half.x && size.y <= half.y;
+    };
+    while (!fits(far) && far < 1e4f * radius) far *= 1.5f;
+    for (int step = 0; step < 30; ++step) {
+      const float middle = 0.5f * (near + far);
+      (fits(middle) ? far : near) = middle;
+    }
+    camera.eye = eyeAt(far);
+    const ImageBox box = imageBox(camera, points);
+    const glm::mat3 axes = cameraAxes(camera);
+    const glm::vec2 middle = 0.5f * (box.min + box.max);
+    camera.target +=
+        (axes[0] * middle.x + axes[1] * middle.y) * glm::dot(camera.eye - camera.target, axes[2]);
+  }
+  return camera;
+}
+
+}  // namespace verdure

@@ -1,0 +1,110 @@
+#include <algorithm>
+
+#include "render/scene.h"
+
+namespace verdure {
+
+GpuScene::GpuScene(const gpu::Device& device, const PackedScene& packed,
+                   vk::DescriptorSetLayout material_layout)
+    : has_crown_normals_(!packed.crown_normals.empty()),
+      draws_(packed.draws),
+      bounds_(packed.bounds),
+      ground_(packed.ground),
+      ground_height_(packed.ground_height) {
+  using Usage = vk::BufferUsageFlagBits;
+  gpu::Upload upload(device);
+  const auto vertices = [&upload](const auto& data) {
+    return upload.buffer(std::span(data), Usage::eVertexBuffer);
+  };
+  positions_ = vertices(packed.positions);
+  leaf_normals_ = vertices(packed.leaf_normals);
+  crown_normals_ = vertices(packed.crown_normals);
+  uvs_ = vertices(packed.uvs);
+  instances_ = vertices(packed.instances);
+  indices_ = upload.buffer(std::span(packed.indices), Usage::eIndexBuffer);
+  for (std::size_t i = 0; i < packed.textures.size(); ++i)
+    textures_.push_back(upload.texture(packed.textures[i].levels, packed.texture_is_linear[i]
+                                                                      ? vk::Format::eR8G8B8A8Unorm
+                                                                      : vk::Format::eR8G8B8A8Srgb));
+  upload.finish();
+
+  for (int clamp = 0; clamp < 4; ++clamp) {
+    const auto mode = [](bool edge) {
+      return edge ? vk::SamplerAddressMode::eClampToEdge : vk::SamplerAddressMode::eRepeat;
+    };
+    samplers_.push_back(
+        device.raii().createSampler({.magFilter = vk::Filter::eLinear,
+                                     .minFilter = vk::Filter::eLinear,
+                                     .mipmapMode = vk::SamplerMipmapMode::eLinear,
+                                     .addressModeU = mode((clamp & 1) != 0),
+                                     .addressModeV = mode((clamp & 2) != 0),
+                                     .anisotropyEnable = device.maxAnisotropy() > 1.0f,
+                                     .maxAnisotropy = std::min(device.maxAnisotropy(), 8.0f),
+                                     .maxLod = VK_LOD_CLAMP_NONE}));
+  }
+
+  if (packed.materials.empty()) return;
+  const auto count = static_cast<std::uint32_t>(packed.materials.size());
+  const vk::DescriptorPoolSize size{.type = vk::DescriptorType::eCombinedImageSampler,
+                                    .descriptorCount = 2 * count};
+  pool_ = device.raii().createDescriptorPool(
+      {.flags = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
+       .maxSets = count,
+       .poolSizeCount = 1,
+       .pPoolSizes = &size});
+  const std::vector<vk::DescriptorSetLayout> layouts(count, material_layout);
+  material_sets_ = vk::raii::DescriptorSets(
+      device.raii(),
+      vk::DescriptorSetAllocateInfo{
+          .descriptorPool = *pool_, .descriptorSetCount = count, .pSetLayouts = layouts.data()});
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const MaterialSlot& slot = packed.materials[i];
+    const auto describe = [&](std::uint32_t texture, const std::array<bool, 2>& clamp) {
+      return vk::DescriptorImageInfo{
+          .sampler = *samplers_[(clamp[0] ? 1u : 0u) + (clamp[1] ? 2u : 0u)],
+          .imageView = *textures_[texture].view,
+          .imageLayout = vk::ImageLayout::eShaderReadOnlyOptimal};
+    };
+    const vk::DescriptorImageInfo base = describe(slot.base_color, slot.base_clamp);
+    const vk::DescriptorImageInfo normal = describe(slot.normal_map, slot.normal_clamp);
+    vk::WriteDescriptorSet write{.dstSet = *material_sets_[i],
+                                 .dstBinding = 0,
+                                 .descriptorCount = 1,
+                                 .descriptorType = vk::DescriptorType::eCombinedImageSampler,
+                                 .pImageInfo = &base};
+    vk::WriteDescriptorSet second = write;
+    second.dstBinding = 1;
+    second.pImageInfo = &normal;
+    device.raii().updateDescriptorSets({write, second}, nullptr);
+  }
+}
+
+void GpuScene::bindVertices(const vk::raii::CommandBuffer& commands, NormalSource normals) const {
+  const bool crown = normals == NormalSource::kCrown && has_crown_normals_;
+  const gpu::Buffer& normal_stream = crown ? crown_normals_ : leaf_normals_;
+  commands.bindVertexBuffers(
+      0, {*positions_.buffer, *normal_stream.buffer, *uvs_.buffer, *instances_.buffer},
+      {0, 0, 0, 0});
+  commands.bindIndexBuffer(*indices_.buffer, 0, vk::IndexType::eUint32);
+}
+
+std::vector<vk::VertexInputBindingDescription> GpuScene::bindings() {
+  return {{.binding = 0, .stride = sizeof(glm::vec3)},
+          {.binding = 1, .stride = sizeof(PackedNormal)},
+          {.binding = 2, .stride = sizeof(glm::vec2)},
+          {.binding = 3,
+           .stride = sizeof(PackedInstance),
+           .inputRate = vk::VertexInputRate::eInstance}};
+}
+
+std::vector<vk::VertexInputAttributeDescription> GpuScene::attributes() {
+  using Format = vk::Format;
+  return {{.location = 0, .binding = 0, .format = Format::eR32G32B32Sfloat},
+          {.location = 1, .binding = 1, .format = Format::eR16G16B16A16Snorm},
+          {.location = 2, .binding = 2, .format = Format::eR32G32Sfloat},
+          {.location = 3, .binding = 3, .format = Format::eR32G32B32A32Sfloat, .offset = 0},
+          {.location = 4, .binding = 3, .format = Format::eR32G32B32A32Sfloat, .offset = 16},
+          {.location = 5, .binding = 3, .format = Format::eR32G32B32A32Sfloat, .offset = 32}};
+}
+
+}  // namespace verdure

@@ -1,0 +1,59 @@
+#include "render/plant_pass.h"
+
+namespace verdure {
+namespace {
+
+constexpr std::uint32_t kVertex[] = {
+#include "shaders/plant_pass.vert.inc"
+};
+constexpr std::uint32_t kFragment[] = {
+#include "shaders/plant_pass.frag.inc"
+};
+
+gpu::Constants constantsOf(const Draw& draw, const Terms& terms) {
+  // A plant without baked light has its leaf normals in either stream: they are turned over.
+  const bool leaf_normals = terms.normal == NormalSource::kLeaf || !draw.baked;
+  return termConstants(terms, {.flip_normal = draw.foliage && leaf_normals,
+                               .alpha_test = draw.alpha_test,
+                               .normal_map = draw.normal_map});
+}
+
+}  // namespace
+
+void PlantPass::prepare(const gpu::Device& device, const FrameLayout& layout, const GpuScene& scene,
+                        const Terms& terms) {
+  for (const Draw& draw : scene.draws()) {
+    gpu::Constants constants = constantsOf(draw, terms);
+    if (pipelines_.contains(constants)) continue;
+    vk::raii::Pipeline pipeline =
+        gpu::makeGraphicsPipeline(device, {.vertex = kVertex,
+                                           .fragment = kFragment,
+                                           .constants = constants,
+                                           .layout = *layout.pipeline,
+                                           .bindings = GpuScene::bindings(),
+                                           .attributes = GpuScene::attributes(),
+                                           .color = FrameLayout::kColor,
+                                           .depth = FrameLayout::kDepth,
+                                           .samples = FrameLayout::kSamples});
+    pipelines_.emplace(std::move(constants), std::move(pipeline));
+  }
+}
+
+void PlantPass::record(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,
+                       vk::DescriptorSet frame_set, const GpuScene& scene,
+                       const Terms& terms) const {
+  if (scene.draws().empty()) return;
+  scene.bindVertices(commands, terms.normal);
+  for (const Draw& draw : scene.draws()) {
+    commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
+                          *pipelines_.at(constantsOf(draw, terms)));
+    commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout.pipeline, 0,
+                                {frame_set, scene.materialSet(draw.material)}, nullptr);
+    commands.pushConstants<shared::DrawUniforms>(
+        *layout.pipeline, vk::ShaderStageFlagBits::eFragment, 0, draw.uniforms);
+    commands.drawIndexed(draw.index_count, draw.instance_count, draw.first_index,
+                         draw.vertex_offset, draw.first_instance);
+  }
+}
+
+}  // namespace verdure

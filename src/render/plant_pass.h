@@ -1,0 +1,27 @@
+#ifndef VERDURE_RENDER_PLANT_PASS_H_
+#define VERDURE_RENDER_PLANT_PASS_H_
+
+#include <map>
+#include <utility>
+
+#include "render/frame_layout.h"
+#include "render/scene.h"
+
+namespace verdure {
+
+/// Draws wood and foliage, lit by the terms that are on. Inside of rendering.
+class PlantPass {
+ public:
+  /// Makes the pipelines that the scene needs with these terms, once each; before recording.
+  void prepare(const gpu::Device& device, const FrameLayout& layout, const GpuScene& scene,
+               const Terms& terms);
+  void record(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,
+              vk::DescriptorSet frame_set, const GpuScene& scene, const Terms& terms) const;
+
+ private:
+  std::map<gpu::Constants, vk::raii::Pipeline> pipelines_;
+};
+
+}  // namespace verdure
+
+#endif  // VERDURE_RENDER_PLANT_PASS_H_

@@ -1,0 +1,212 @@
+#include "render/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "base/parallel.h"
+#include "render/look.h"
+#include "shared/density.h"
+#include "verdure/error.h"
+
+namespace verdure {
+namespace {
+
+/// Opacity below which a texel is cut, in the texture's own alpha.
+float textureCutoff(const Material& material) {
+  const float cutoff =
+      material.alpha_mode == AlphaMode::kMask ? material.alpha_cutoff : 0.5f;  // blended: as cut
+  return std::clamp(cutoff / std::max(material.base_color.a, 1e-3f), 1.0f / 255.0f, 1.0f);
+}
+
+class Packer {
+ public:
+  explicit Packer(const Scene& scene) : scene_(scene) {
+    const std::uint8_t white[] = {255, 255, 255, 255}, flat[] = {128, 128, 255, 255};
+    for (const auto& texel : {white, flat}) {
+      Image image(1, 1);
+      std::copy_n(texel, 4, image.rgba.begin());
+      out_.textures.push_back(texel == white ? buildColorMips(image, {}) : buildLinearMips(image));
+      out_.texture_is_linear.push_back(texel == flat);
+    }
+  }
+
+  PackedScene pack() {
+    bool any_baked = false;
+    for (const SceneItem& item : scene_.items) any_baked = any_baked || item.light != nullptr;
+    out_.bounds = {glm::vec3(std::numeric_limits<float>::max()),
+                   glm::vec3(std::numeric_limits<float>::lowest())};
+    for (const SceneItem& item : scene_.items) packItem(item, any_baked);
+    if (out_.draws.empty()) out_.bounds = {glm::vec3(-1.0f), glm::vec3(1.0f)};
+    std::stable_partition(out_.draws.begin(), out_.draws.end(),
+                          [](const Draw& draw) { return !draw.foliage; });
+    out_.ground = scene_.ground;
+    out_.ground_height = scene_.ground_height;
+    return std::move(out_);
+  }
+
+ private:
+  void packItem(const SceneItem& item, bool any_baked) {
+    const Plant& plant = *item.plant;
+    if (item.light != nullptr && item.light->meshes.size() != plant.meshes.size())
+      throw Error(plant.name, "its baked light belongs to another plant", "bake this plant");
+    const auto first_instance = static_cast<std::uint32_t>(out_.instances.size());
+    for (const glm::mat4& instance : item.world_from_plant) {
+      const glm::mat4 rows = glm::transpose(worldFromPlant(scene_, item, instance));
+      out_.instances.push_back({rows[0], rows[1], rows[2]});
+    }
+    for (std::size_t m = 0; m < plant.meshes.size(); ++m) {
+      const MeshLight* light = item.light != nullptr ? &item.light->meshes[m] : nullptr;
+      Draw draw = packMesh(plant, plant.meshes[m], light, any_baked);
+      draw.first_instance = first_instance;
+      draw.instance_count = static_cast<std::uint32_t>(item.world_from_plant.size());
+      if (draw.index_count > 0 && draw.instance_count > 0) out_.draws.push_back(draw);
+    }
+    growBounds(bounds(plant), first_instance);
+  }
+
+  void growBounds(const Bounds& box, std::uint32_t first_instance) {
+    for (std::size_t i = first_instance; i < out_.instances.size(); ++i)
+      for (int corner = 0; corner < 8; ++corner) {
+        const glm::vec4 p((corner & 1) != 0 ? box.max.x : box.min.x,
+                          (corner & 2) != 0 ? box.max.y : box.min.y,
+                          (corner & 4) != 0 ? box.max.z : box.min.z, 1.0f);
+        const PackedInstance& rows = out_.instances[i];
+        const glm::vec3 q(glm::dot(rows[0], p), glm::dot(rows[1], p), glm::dot(rows[2], p));
+        out_.bounds.min = glm::min(out_.bounds.min, q);
+        out_.bounds.max = glm::max(out_.bounds.max, q);
+      }
+  }
+
+  Draw packMesh(const Plant& plant, const Mesh& mesh, const MeshLight* light, bool any_baked) {
+    const std::size_t count = mesh.positions.size();
+    const std::string where = plant.name + ", mesh " + mesh.name;
+    if (mesh.normals.size() != count)
+      throw Error(where, "has not one normal for each vertex", "load it with loadPlant");
+    if (!mesh.uvs.empty() && mesh.uvs.size() != count)
+      throw Error(where, "has not one texture coordinate for each vertex");
+    if (light != nullptr && (light->normals.size() != count || light->ambient.size() != count))
+      throw Error(where, "its baked light has another number of vertices", "bake this plant");
+    if (std::any_of(mesh.indices.begin(), mesh.indices.end(),
+                    [count](std::uint32_t i) { return i >= count; }))
+      throw Error(where, "has an index past its last vertex");
+    if (out_.positions.size() + count > std::size_t{std::numeric_limits<std::int32_t>::max()})
+      throw Error(where, "the scene has over 2^31 vertices", "use instances");
+
+    Draw draw;
+    draw.foliage = mesh.kind == PartKind::kFoliage;
+    draw.baked = light != nullptr;
+    draw.vertex_offset = static_cast<std::int32_t>(out_.positions.size());
+    draw.first_index = static_cast<std::uint32_t>(out_.indices.size());
+    draw.index_count = static_cast<std::uint32_t>(mesh.indices.size() / 3 * 3);
+    describeMaterial(plant, mesh, draw);
+
+    const std::size_t base = out_.positions.size();
+    out_.positions.insert(out_.positions.end(), mesh.positions.begin(), mesh.positions.end());
+    out_.indices.insert(out_.indices.end(), mesh.indices.begin(), mesh.indices.end());
+    out_.uvs.insert(out_.uvs.end(), mesh.uvs.begin(), mesh.uvs.end());
+    out_.uvs.resize(base + count, glm::vec2(0.0f));
+    out_.leaf_normals.resize(base + count);
+    if (any_baked) out_.crown_normals.resize(base + count);
+    parallelFor(count, 4096, [&](std::size_t v) {
+      const float k = light != nullptr ? light->ambient[v] : 1.0f;
+      out_.leaf_normals[base + v] = packNormal(mesh.normals[v], k);
+      if (any_baked)
+        out_.crown_normals[base + v] =
+            packNormal(light != nullptr ? light->normals[v] : mesh.normals[v], k);
+    });
+    return draw;
+  }
+
+  void describeMaterial(const Plant& plant, const Mesh& mesh, Draw& draw) {
+    static const Material kPlain;
+    const Material& material =
+        mesh.material < plant.materials.size() ? plant.materials[mesh.material] : kPlain;
+    const bool textured = !mesh.uvs.empty();
+    draw.alpha_test =
+        material.alpha_mode != AlphaMode::kOpaque && textured && material.base_color_texture >= 0;
+    draw.normal_map = textured && material.normal_texture >= 0;
+    const float cutoff = textureCutoff(material);
+    MaterialSlot slot;
+    slot.normal_map = 1;
+    if (textured && material.base_color_texture >= 0) {
+      const Texture& texture = textureOf(plant, material.base_color_texture);
+      slot.base_color = addTexture(
+          draw.alpha_test ? TextureJob{&texture.image, TextureJob::Kind::kAlphaCut, cutoff}
+                          : TextureJob{&texture.image, TextureJob::Kind::kColor, 0.0f});
+      slot.base_clamp = {texture.clamp_u, texture.clamp_v};
+    }
+    if (draw.normal_map) {
+      const Texture& texture = textureOf(plant, material.normal_texture);
+      slot.normal_map = addTexture({&texture.image, TextureJob::Kind::kLinear, 0.0f});
+      slot.normal_clamp = {texture.clamp_u, texture.clamp_v};
+    }
+    draw.material = addMaterial(slot);
+    const glm::vec3 mean = out_.textures[slot.base_color].mean_color;
+    draw.uniforms.color = material.base_color;
+    draw.uniforms.matt = glm::vec4(glm::vec3(material.base_color) * mean, 1.0f);
+    draw.uniforms.surface = glm::vec4(cutoff, material.normal_scale,
+                                      draw.foliage ? look::kLeafSpecular : look::kWoodSpecular,
+                                      draw.foliage ? look::kLeafExponent : look::kWoodExponent);
+  }
+
+  static const Texture& textureOf(const Plant& plant, int index) {
+    if (static_cast<std::size_t>(index) >= plant.textures.size() ||
+        plant.textures[static_cast<std::size_t>(index)].image.empty())
+      throw Error(plant.name, "a material's texture " + std::to_string(index) + " is missing");
+    return plant.textures[static_cast<std::size_t>(index)];
+  }
+
+  std::uint32_t addTexture(const TextureJob& job) {
+    const auto [entry, is_new] =
+        known_textures_.try_emplace(job, static_cast<std::uint32_t>(out_.textures.size()));
+    if (is_new) {
+      const bool linear = job.kind == TextureJob::Kind::kLinear;
+      out_.textures.push_back(
+          linear ? buildLinearMips(*job.image)
+                 : buildColorMips(*job.image, job.kind == TextureJob::Kind::kAlphaCut
+                                                  ? std::optional(job.cutoff)
+                                                  : std::nullopt));
+      out_.texture_is_linear.push_back(linear);
+    }
+    return entry->second;
+  }
+
+  std::uint32_t addMaterial(const MaterialSlot& slot) {
+    const auto found = std::find(out_.materials.begin(), out_.materials.end(), slot);
+    if (found != out_.materials.end())
+      return static_cast<std::uint32_t>(found - out_.materials.begin());
+    out_.materials.push_back(slot);
+    return static_cast<std::uint32_t>(out_.materials.size() - 1);
+  }
+
+  const Scene& scene_;
+  PackedScene out_;
+  std::map<TextureJob, std::uint32_t> known_textures_;
+};
+
+}  // namespace
+
+PackedNormal packNormal(const glm::vec3& unit_normal, float ambient) {
+  const glm::vec3 n = shared::encodeNormal(unit_normal, std::clamp(ambient, 0.0f, 1.0f));
+  const auto component = [](float value) {
+    return static_cast<std::int16_t>(std::lround(std::clamp(value, -1.0f, 1.0f) * 32767.0f));
+  };
+  return {component(n.x), component(n.y), component(n.z), 0};
+}
+
+glm::mat4 worldFromPlant(const Scene& scene, const SceneItem& item, const glm::mat4& instance) {
+  const glm::vec3 offset(item.plant->origin - scene.items.front().plant->origin);
+  glm::mat4 moved = instance;
+  moved[3] += glm::vec4(offset, 0.0f);
+  return moved;
+}
+
+PackedScene packScene(const Scene& scene) {
+  for (const SceneItem& item : scene.items)
+    if (item.plant == nullptr) throw Error("scene", "an item has no plant", "set SceneItem::plant");
+  return Packer(scene).pack();
+}
+
+}  // namespace verdure

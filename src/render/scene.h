@@ -1,0 +1,112 @@
+#ifndef VERDURE_RENDER_SCENE_H_
+#define VERDURE_RENDER_SCENE_H_
+
+#include <array>
+#include <vector>
+
+#include "gpu/resources.h"
+#include "render/mipmaps.h"
+#include "render/terms.h"
+#include "shared/frame.h"
+#include "verdure/render.h"
+
+namespace verdure {
+
+/// A unit normal times the ambient coefficient, 16 bits a component (the fourth is unused): the
+/// paper's encoding. A vertex with baked light is no larger than one without.
+using PackedNormal = std::array<std::int16_t, 4>;
+PackedNormal packNormal(const glm::vec3& unit_normal, float ambient);
+
+/// Rows of world_from_plant.
+using PackedInstance = std::array<glm::vec4, 3>;
+
+/// One mesh at all places of its item.
+struct Draw {
+  bool foliage = false;
+  bool baked = false;  ///< has crown normals; else they are the mesh's own
+  bool alpha_test = false;
+  bool normal_map = false;
+  std::uint32_t index_count = 0, first_index = 0;
+  std::int32_t vertex_offset = 0;
+  std::uint32_t instance_count = 0, first_instance = 0;
+  std::uint32_t material = 0;  ///< index into PackedScene::materials
+  shared::DrawUniforms uniforms{};
+};
+
+/// A texture to upload; equal ones are packed once.
+struct TextureJob {
+  enum class Kind { kColor, kAlphaCut, kLinear };
+  const Image* image = nullptr;
+  Kind kind = Kind::kColor;
+  float cutoff = 0.0f;
+  auto operator<=>(const TextureJob&) const = default;
+};
+
+/// The textures that a draw binds, and how they repeat. Index 0 of a texture is plain white (base
+/// colour) or flat (normal map).
+struct MaterialSlot {
+  std::uint32_t base_color = 0;
+  std::uint32_t normal_map = 0;
+  std::array<bool, 2> base_clamp{};  ///< u, v
+  std::array<bool, 2> normal_clamp{};
+  auto operator<=>(const MaterialSlot&) const = default;
+};
+
+/// A scene as arrays for the GPU. Coordinates are relative to the origin of the first item's plant.
+struct PackedScene {
+  std::vector<glm::vec3> positions;
+  std::vector<PackedNormal> leaf_normals;   ///< the mesh's normals times k
+  std::vector<PackedNormal> crown_normals;  ///< the baked normals times k; empty without bakes
+  std::vector<glm::vec2> uvs;
+  std::vector<std::uint32_t> indices;
+  std::vector<PackedInstance> instances;
+  std::vector<Draw> draws;  ///< wood first: it hides the most
+  std::vector<MipChain> textures;
+  std::vector<bool> texture_is_linear;
+  std::vector<MaterialSlot> materials;
+  Bounds bounds;  ///< of all instances
+  bool ground = false;
+  float ground_height = 0.0f;
+};
+
+/// Throws Error for a null plant, arrays of different lengths, indices out of range.
+PackedScene packScene(const Scene& scene);
+
+/// world_from_plant of an instance with the item's own origin taken into account.
+glm::mat4 worldFromPlant(const Scene& scene, const SceneItem& item, const glm::mat4& instance);
+
+/// A packed scene on the GPU, with a descriptor set for each material (set 1: base colour, normal
+/// map).
+class GpuScene {
+ public:
+  GpuScene(const gpu::Device& device, const PackedScene& packed,
+           vk::DescriptorSetLayout material_layout);
+
+  /// Binds all vertex streams and the index buffer; the normals are those asked for.
+  void bindVertices(const vk::raii::CommandBuffer& commands, NormalSource normals) const;
+  vk::DescriptorSet materialSet(std::uint32_t material) const { return *material_sets_[material]; }
+  const std::vector<Draw>& draws() const { return draws_; }
+  const Bounds& bounds() const { return bounds_; }
+  bool ground() const { return ground_; }
+  float groundHeight() const { return ground_height_; }
+
+  /// Vertex bindings 0..3 and attributes: position, normal, uv, rows of the instance.
+  static std::vector<vk::VertexInputBindingDescription> bindings();
+  static std::vector<vk::VertexInputAttributeDescription> attributes();
+
+ private:
+  gpu::Buffer positions_, leaf_normals_, crown_normals_, uvs_, indices_, instances_;
+  bool has_crown_normals_ = false;
+  std::vector<gpu::Texture> textures_;
+  std::vector<vk::raii::Sampler> samplers_;  ///< [clamp_u + 2 clamp_v]
+  vk::raii::DescriptorPool pool_ = nullptr;
+  std::vector<vk::raii::DescriptorSet> material_sets_;
+  std::vector<Draw> draws_;
+  Bounds bounds_;
+  bool ground_ = false;
+  float ground_height_ = 0.0f;
+};
+
+}  // namespace verdure
+
+#endif  // VERDURE_RENDER_SCENE_H_

@@ -1,0 +1,33 @@
+#include "render/sky_pass.h"
+
+namespace verdure {
+namespace {
+
+constexpr std::uint32_t kVertex[] = {
+#include "shaders/sky_pass.vert.inc"
+};
+constexpr std::uint32_t kFragment[] = {
+#include "shaders/sky_pass.frag.inc"
+};
+
+}  // namespace
+
+SkyPass::SkyPass(const gpu::Device& device, const FrameLayout& layout)
+    : pipeline_(gpu::makeGraphicsPipeline(device, {.vertex = kVertex,
+                                                   .fragment = kFragment,
+                                                   .layout = *layout.pipeline,
+                                                   .color = FrameLayout::kColor,
+                                                   .depth = FrameLayout::kDepth,
+                                                   .samples = FrameLayout::kSamples,
+                                                   .depth_compare = vk::CompareOp::eGreaterOrEqual,
+                                                   .depth_write = false})) {}
+
+void SkyPass::record(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,
+                     vk::DescriptorSet frame_set) const {
+  commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipeline_);
+  commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout.pipeline, 0, {frame_set},
+                              nullptr);
+  commands.draw(3, 1, 0, 0);
+}
+
+}  // namespace verdure

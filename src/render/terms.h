@@ -1,0 +1,26 @@
+#ifndef VERDURE_RENDER_TERMS_H_
+#define VERDURE_RENDER_TERMS_H_
+
+#include "gpu/pipeline.h"
+#include "verdure/render.h"
+
+namespace verdure {
+
+/// What a draw is, as far as its pipeline depends on it.
+struct DrawKind {
+  bool flip_normal = false;  ///< leaf normals: turned over on back faces
+  bool alpha_test = false;
+  bool normal_map = false;
+  auto operator<=>(const DrawKind&) const = default;
+};
+
+/// The specialisation constants, numbered as in src/shaders/terms.glsl.
+inline gpu::Constants termConstants(const Terms& terms, const DrawKind& kind = {}) {
+  return {terms.ambient,    terms.diffuse,   terms.specular,
+          terms.shadow,     terms.textures,  terms.ambient_source == AmbientSource::kBaked,
+          kind.flip_normal, kind.alpha_test, kind.normal_map};
+}
+
+}  // namespace verdure
+
+#endif  // VERDURE_RENDER_TERMS_H_

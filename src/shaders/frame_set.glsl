@@ -1,0 +1,6 @@
+#include "shared/frame.h"
+// Descriptor set 0, the same for every pass.
+layout(set = 0, binding = 0, std140) uniform FrameBlock { FrameUniforms frame; };
+layout(set = 0, binding = 1) uniform sampler2DShadow shadow_map;
+layout(set = 0, binding = 2) uniform sampler2D ground_texture;
+layout(set = 0, binding = 3) uniform sampler2D ground_noise;

@@ -1,0 +1,71 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "frame_set.glsl"
+#include "shared/illumination.h"
+#include "sun_visibility.glsl"
+#include "terms.glsl"
+
+layout(set = 1, binding = 0) uniform sampler2D base_color;
+layout(set = 1, binding = 1) uniform sampler2D normal_map;
+layout(push_constant) uniform DrawBlock { DrawUniforms draw; };
+
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec4 in_normal;
+layout(location = 2) in vec2 uv;
+layout(location = 0) out vec4 out_color;
+
+/// Which of the four samples an alpha-cut surface covers. Written here rather than left to the
+/// fixed alpha-to-coverage, whose rounding differs between drivers: alpha is steepened to an edge
+/// about one pixel wide around the cutoff, and a fixed pattern of thresholds over the pixels
+/// (Jimenez 2014, interleaved gradient noise) makes the mean coverage of large areas exact.
+int coverageMask(float alpha, float cutoff) {
+  float coverage = clamp((alpha - cutoff) / max(fwidth(alpha), 0.125) + 0.5, 0.0, 1.0);
+  float threshold = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+  int count = int(floor(coverage * 4.0 + threshold));
+  return (1 << min(count, 4)) - 1;
+}
+
+/// Normal map without vertex tangents: the frame follows from the screen derivatives of position
+/// and texture coordinates (Schueler, "Followup: Normal Mapping Without Precomputed Tangents",
+/// 2013). glTF's maps have green up, against its v.
+vec3 mappedNormal(vec3 n) {
+  vec3 p_x = dFdx(position), p_y = dFdy(position);
+  vec2 uv_x = dFdx(uv), uv_y = dFdy(uv);
+  vec3 x_perpendicular = cross(p_y, n), y_perpendicular = cross(n, p_x);
+  float handedness = dot(p_x, x_perpendicular) < 0.0 ? -1.0 : 1.0;
+  vec3 t = (x_perpendicular * uv_x.x + y_perpendicular * uv_y.x) * handedness;
+  vec3 b = (x_perpendicular * uv_x.y + y_perpendicular * uv_y.y) * -handedness;
+  float longest = max(dot(t, t), dot(b, b));
+  if (longest <= 0.0) return n;
+  vec3 m = texture(normal_map, uv).xyz * (255.0 / 127.0) - (128.0 / 127.0);
+  m.xy *= draw.surface.y;
+  return normalize((t * m.x + b * m.y) * inversesqrt(longest) + n * max(m.z, 0.05));
+}
+
+void main() {
+  vec4 texel = vec4(1.0);
+  if (kTextures || kAlphaTest) texel = texture(base_color, uv);
+  if (kAlphaTest) {
+    int mask = coverageMask(texel.a, draw.surface.x);
+    gl_SampleMask[0] = mask;
+    if (mask == 0) discard;
+  } else {
+    gl_SampleMask[0] = 15;
+  }
+  vec3 color = kTextures ? texel.rgb * draw.color.rgb : draw.matt.rgb;
+
+  vec3 n = normalize(in_normal.xyz);
+  if (kFlipNormal && !gl_FrontFacing) n = -n;
+  if (kNormalMap && kTextures) n = mappedNormal(n);
+  vec3 l = frame.to_sun.xyz;
+  vec3 v = normalize(frame.eye.xyz - position);
+
+  float visibility = 1.0;
+  if (kShadow) visibility = sunVisibility(position, normalize(cross(dFdx(position), dFdy(position))));
+  float k_a = kAmbient ? (kBakedAmbient ? in_normal.w : 1.0) : 0.0;
+  float diffuse = kDiffuse ? diffuseFactor(n, l) : 0.0;
+  float specular = kSpecular ? specularFactor(n, l, v, draw.surface.w) : 0.0;
+  out_color = vec4(illumination(frame.ambient_color.rgb, color * k_a, frame.sun_color.rgb,
+                                visibility, color, diffuse, draw.surface.z, specular),
+                   1.0);
+}

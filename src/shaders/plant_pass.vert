@@ -1,0 +1,21 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "frame_set.glsl"
+#include "instance.glsl"
+#include "shared/density.h"
+#include "terms.glsl"
+
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 encoded_normal;
+layout(location = 2) in vec2 uv;
+layout(location = 0) out vec3 out_position;
+layout(location = 1) out vec4 out_normal;  // w = ambient coefficient
+layout(location = 2) out vec2 out_uv;
+
+void main() {
+  vec4 decoded = decodeNormal(encoded_normal);
+  out_position = worldFromPlant(position);
+  out_normal = vec4(normalize(worldNormal(decoded.xyz, kFlipNormal)), decoded.w);
+  out_uv = uv;
+  gl_Position = frame.clip_from_world * vec4(out_position, 1.0);
+}

@@ -1,0 +1,11 @@
+// The specialisation constants: the terms of illumination model (1) and what a draw needs. A term
+// that is off costs nothing. Numbered as in src/render/terms.h.
+layout(constant_id = 0) const bool kAmbient = true;
+layout(constant_id = 1) const bool kDiffuse = true;
+layout(constant_id = 2) const bool kSpecular = true;
+layout(constant_id = 3) const bool kShadow = true;
+layout(constant_id = 4) const bool kTextures = true;
+layout(constant_id = 5) const bool kBakedAmbient = true;
+layout(constant_id = 6) const bool kFlipNormal = false;
+layout(constant_id = 7) const bool kAlphaTest = false;
+layout(constant_id = 8) const bool kNormalMap = false;

@@ -8,7 +8,7 @@ function(verdure_shaders target)
     set(inc ${out}/shaders/${name}.inc)
     add_custom_command(
       OUTPUT ${inc}
-      COMMAND Vulkan::glslc --target-env=vulkan1.3 -O -Werror -mfmt=num -I${PROJECT_SOURCE_DIR}/src
+      COMMAND Vulkan::glslc --target-env=vulkan1.2 -O -Werror -mfmt=num -I${PROJECT_SOURCE_DIR}/src
               -MD -MF ${inc}.d -MT ${inc} -o ${inc} ${shader}
       DEPENDS ${shader}
       DEPFILE ${inc}.d

@@ -27,12 +27,12 @@ inline Image leafImage(int size) {
               ? 1.2f
               : 1.0f;
       std::uint8_t* p = image.at(x, y);
-      const bool in = inside > 0.0f;
+      const float alpha = std::clamp(0.5f + inside * static_cast<float>(size) * 0.25f, 0.0f, 1.0f);
+      const bool in = alpha > 0.0f;
       p[0] = static_cast<std::uint8_t>(in ? 88.0f * vein : 255.0f);
       p[1] = static_cast<std::uint8_t>(in ? 132.0f * vein : 0.0f);
       p[2] = static_cast<std::uint8_t>(in ? 48.0f * vein : 255.0f);
-      p[3] = static_cast<std::uint8_t>(
-          std::clamp(0.5f + inside * static_cast<float>(size) * 0.25f, 0.0f, 1.0f) * 255.0f);
+      p[3] = static_cast<std::uint8_t>(alpha * 255.0f);
     }
   return image;
 }

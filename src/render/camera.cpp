@@ -130,7 +130,7 @@ Camera automaticCamera(const Scene& scene, float azimuth, float elevation, float
   // At elevation 0 the eye is where a standing person's is, for plants of such size; lower for
   // small plants, higher for giants.
   const float height = high.y - low.y;
-  const float eye_height = std::min(std::max(1.7f, 0.12f * height), height / 3.0f);
+  const float eye_height = std::min(std::max(1.7f, 0.125f * height), height / 3.0f);
   const glm::vec3 direction = directionOf(azimuth, elevation);
   const auto eyeAt = [&](float distance) {
     const glm::vec3 flat(center.x, low.y + eye_height, center.z);

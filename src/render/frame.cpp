@@ -54,13 +54,11 @@ FrameDrawer::FrameDrawer(const gpu::Device& device)
   ground_noise_ = upload.texture(buildLinearMips(makeGroundNoise(kGroundNoiseSize)).levels,
                                  vk::Format::eR8G8B8A8Unorm);
   upload.finish();
-  ground_sampler_ =
-      device.raii().createSampler({.magFilter = vk::Filter::eLinear,
-                                   .minFilter = vk::Filter::eLinear,
-                                   .mipmapMode = vk::SamplerMipmapMode::eLinear,
-                                   .anisotropyEnable = device.maxAnisotropy() > 1.0f,
-                                   .maxAnisotropy = std::min(device.maxAnisotropy(), 8.0f),
-                                   .maxLod = VK_LOD_CLAMP_NONE});
+  // No anisotropic filter: ground_pass.frag takes several taps along a grazing footprint itself.
+  ground_sampler_ = device.raii().createSampler({.magFilter = vk::Filter::eLinear,
+                                                 .minFilter = vk::Filter::eLinear,
+                                                 .mipmapMode = vk::SamplerMipmapMode::eLinear,
+                                                 .maxLod = VK_LOD_CLAMP_NONE});
   // Bilinear comparison where the device has it for this format; else the tent has harder steps.
   const bool smooth =
       bool(device.physical().getFormatProperties(FrameLayout::kDepth).optimalTilingFeatures &

@@ -1,0 +1,172 @@
+#ifndef VERDURE_TESTS_RENDER_FIXTURE_H_
+#define VERDURE_TESTS_RENDER_FIXTURE_H_
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "render/camera.h"
+#include "render/look.h"
+#include "render/scene.h"
+#include "shared/color.h"
+#include "shared/illumination.h"
+#include "test_plants.h"
+#include "verdure/error.h"
+#include "verdure/render.h"
+
+/// What the renderer's tests share: plants of one surface, a view of them, expected colours.
+namespace verdure::test {
+
+/// A 2 m x 2 m foliage quad in z = 0 that faces +Z, without textures.
+inline Plant whiteQuad(const glm::vec4& color = glm::vec4(1.0f)) {
+  Plant plant;
+  plant.name = "quad";
+  Material material;
+  material.base_color = color;
+  plant.materials = {material};
+  Mesh mesh;
+  mesh.kind = PartKind::kFoliage;
+  addQuad(mesh, {0, -1, 0}, {2, 0, 0}, {0, 2, 0});
+  plant.meshes = {mesh};
+  return plant;
+}
+
+/// A card of side `side` at y = `height`, facing up.
+inline Plant horizontalCard(float height, float side) {
+  Plant plant = whiteQuad();
+  plant.meshes[0] = {};
+  plant.meshes[0].kind = PartKind::kFoliage;
+  addQuad(plant.meshes[0], {0, height, 0.5f * side}, {side, 0, 0}, {0, 0, -side});
+  return plant;
+}
+
+inline Plant standingTube(float radius, float low, float high) {
+  Plant plant = whiteQuad();
+  plant.meshes[0] = {};
+  addTube(plant.meshes[0], {0, low, 0}, {0, high, 0}, radius, radius, 64);
+  return plant;
+}
+
+/// A 1 m card in z = 0 with the test leaf's alpha and white colour.
+inline Plant leafCard() {
+  Plant plant = whiteQuad();
+  Image image = leafImage(128);
+  for (std::size_t i = 0; i < image.rgba.size(); ++i)
+    if (i % 4 != 3) image.rgba[i] = 255;
+  plant.textures = {{"leaf", image, true, true}};
+  plant.materials[0].base_color_texture = 0;
+  plant.materials[0].alpha_mode = AlphaMode::kMask;
+  plant.meshes[0] = {};
+  plant.meshes[0].kind = PartKind::kFoliage;
+  addQuad(plant.meshes[0], {0, -0.5f, 0}, {1, 0, 0}, {0, 1, 0});
+  return plant;
+}
+
+inline CrownLight uniformLight(const Plant& plant, const glm::vec3& normal, float ambient) {
+  CrownLight light;
+  for (const Mesh& mesh : plant.meshes)
+    light.meshes.push_back({std::vector<glm::vec3>(mesh.positions.size(), normal),
+                            std::vector<float>(mesh.positions.size(), ambient)});
+  return light;
+}
+
+inline Scene itemScene(const Plant& plant, const CrownLight* light) {
+  Scene scene;
+  scene.items.push_back({&plant, light});
+  scene.ground = false;
+  return scene;
+}
+
+inline View smallView(int width, int height) {
+  View view;
+  view.width = width;
+  view.height = height;
+  view.shadow_map_size = 256;
+  return view;
+}
+
+/// Looks at whiteQuad(), which fills the middle. The sun is white and dim enough not to clip.
+inline View quadView() {
+  View view = smallView(64, 48);
+  view.camera = {{0, 0, 5}, {0, 0, 0}, 0.3f};
+  view.sun_color = {0.9f, 0.8f, 0.6f};
+  view.ambient_color = {0.1f, 0.1f, 0.1f};
+  view.background = glm::vec3(0.0f);
+  return view;
+}
+
+/// Direction through the centre of a pixel.
+inline glm::vec3 pixelRay(const View& view, int x, int y) {
+  const glm::vec3 forward = glm::normalize(view.camera.target - view.camera.eye);
+  const glm::vec3 right = glm::normalize(glm::cross(forward, glm::vec3(0, 1, 0)));
+  const glm::vec3 up = glm::cross(right, forward);
+  const float tan_half = std::tan(0.5f * view.camera.vertical_fov);
+  const float h = static_cast<float>(view.height), w = static_cast<float>(view.width);
+  const float right_by = (2.0f * (static_cast<float>(x) + 0.5f) - w) / h * tan_half;
+  const float up_by = (h - 2.0f * (static_cast<float>(y) + 0.5f)) / h * tan_half;
+  return glm::normalize(forward + right * right_by + up * up_by);
+}
+
+inline glm::ivec2 pixelOf(const View& view, const glm::vec3& point) {
+  const glm::vec3 forward = glm::normalize(view.camera.target - view.camera.eye);
+  const glm::vec3 right = glm::normalize(glm::cross(forward, glm::vec3(0, 1, 0)));
+  const glm::vec3 up = glm::cross(right, forward);
+  const glm::vec3 d = point - view.camera.eye;
+  const float scale = 0.5f * static_cast<float>(view.height) /
+                      std::tan(0.5f * view.camera.vertical_fov) / glm::dot(d, forward);
+  return {static_cast<int>(0.5f * static_cast<float>(view.width) + glm::dot(d, right) * scale),
+          static_cast<int>(0.5f * static_cast<float>(view.height) - glm::dot(d, up) * scale)};
+}
+
+/// (1) with the renderer's coefficients for foliage, from the shared formula.
+inline glm::vec3 expectedLeafColor(const View& view, const glm::vec3& color, float k,
+                                   const glm::vec3& normal, const glm::vec3& point) {
+  const glm::vec3 l = directionOf(view.sun_azimuth, view.sun_elevation);
+  const glm::vec3 v = glm::normalize(view.camera.eye - point);
+  return shared::illumination(view.ambient_color, color * k, view.sun_color, 1.0f, color,
+                              shared::diffuseFactor(normal, l), look::kLeafSpecular,
+                              shared::specularFactor(normal, l, v, look::kLeafExponent));
+}
+
+inline void expectPixel(const Image& image, int x, int y, const glm::vec3& linear) {
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(static_cast<float>(image.at(x, y)[c]),
+                255.0f * shared::srgbFromLinear(std::clamp(linear[c], 0.0f, 1.0f)), 1.0f)
+        << "pixel " << x << ", " << y << ", channel " << c;
+}
+
+/// Pixels that differ by more than `most` in a channel.
+inline int countDifferent(const Image& a, const Image& b, int most) {
+  int count = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); i += 4) {
+    int worst = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+      worst = std::max(worst, std::abs(int{a.rgba[i + c]} - int{b.rgba[i + c]}));
+    count += worst > most ? 1 : 0;
+  }
+  return count;
+}
+
+/// One renderer with the validation layer for all tests of the process; each test must leave the
+/// layer silent.
+class RenderTest : public testing::Test {
+ protected:
+  static Renderer& renderer() {
+    static Renderer instance({.device = "", .validation = true});
+    return instance;
+  }
+  void TearDown() override { EXPECT_EQ(renderer().validationMessages(), 0); }
+
+  static void setItem(const Plant& plant, const CrownLight* light) {
+    renderer().setScene(itemScene(plant, light));
+  }
+  static void expectCenter(const View& view, const glm::vec3& linear) {
+    expectPixel(renderer().render(view).image, view.width / 2, view.height / 2, linear);
+  }
+};
+
+}  // namespace verdure::test
+
+#endif  // VERDURE_TESTS_RENDER_FIXTURE_H_

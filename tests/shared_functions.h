@@ -1,0 +1,48 @@
+#ifndef VERDURE_TESTS_SHARED_FUNCTIONS_H_
+#define VERDURE_TESTS_SHARED_FUNCTIONS_H_
+
+#include "shared/color.h"
+#include "shared/density.h"
+#include "shared/illumination.h"
+#include "shared/sky.h"
+
+// Every shared function of the renderer, called with eight numbers in [0, 1]: compiled as C++ and
+// as GLSL, so that one test compares both.
+
+SHARED_BEGIN
+
+struct SharedResults {
+  vec4 density;   // metaball, ambientCoefficient, length of encodeNormal, k of decodeNormal
+  vec4 normal;    // direction of decodeNormal, hazeShare
+  vec4 light;     // illumination, specularFactor
+  vec4 sky;       // skyColor, diffuseFactor
+  vec4 transfer;  // srgbFromLinear, linearFromSrgb, ground's mean
+};
+SHARED_SIZE(SharedResults, 80);
+
+SHARED_FUNCTION SharedResults evaluateShared(vec4 a, vec4 b) {
+  vec3 n = normalize(vec3(a.x - 0.5f, a.y - 0.5f, a.z - 0.45f));
+  vec3 l = normalize(vec3(b.x - 0.5f, b.y - 0.5f, b.z - 0.45f));
+  vec3 v = normalize(vec3(a.w - 0.5f, b.w - 0.5f, 0.6f));
+  float k = ambientCoefficient(6.0f * a.x - 1.0f, 0.5f + 3.0f * a.y, 0.9f * a.z, 0.3f + 3.0f * a.w);
+  vec3 encoded = encodeNormal(n, k);
+  vec4 decoded = decodeNormal(encoded);
+  float diffuse = diffuseFactor(n, l);
+  float specular = specularFactor(n, l, v, 1.0f + 20.0f * b.x);
+  vec3 color = vec3(a.w, b.w, b.z);
+  vec3 lit = illumination(vec3(0.4f, 0.5f, 0.6f), color * k, vec3(1.7f, 1.6f, 1.4f), b.y, color,
+                          diffuse, 0.06f, specular);
+  vec3 sky = skyColor(l, vec3(0.7f, 0.8f, 0.9f), vec3(0.1f, 0.3f, 0.7f));
+  vec3 mean = groundMeanColor();
+  SharedResults r;
+  r.density = vec4(metaball(1.2f * a.x), k, length(encoded), decoded.w);
+  r.normal = vec4(decoded.x, decoded.y, decoded.z, hazeShare(300.0f * a.x, 20.0f + 50.0f * a.y));
+  r.light = vec4(lit, specular);
+  r.sky = vec4(sky, diffuse);
+  r.transfer = vec4(srgbFromLinear(a.x), linearFromSrgb(a.x), mean.x, mean.y + mean.z);
+  return r;
+}
+
+SHARED_END
+
+#endif  // VERDURE_TESTS_SHARED_FUNCTIONS_H_

@@ -1,6 +1,9 @@
 #ifndef VERDURE_TESTS_GLTF_BUILDER_H_
 #define VERDURE_TESTS_GLTF_BUILDER_H_
 
+#include <sys/wait.h>
+
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <glm/glm.hpp>
@@ -47,7 +50,17 @@ class GltfBuilder {
     return static_cast<int>(json["accessors"].size()) - 1;
   }
 
-  int floats(const std::vector<glm::vec3>& v) { return accessor(view(v), 5126, v.size(), "VEC3"); }
+  int floats(const std::vector<glm::vec3>& v) {
+    const int index = accessor(view(v), 5126, v.size(), "VEC3");
+    glm::vec3 low = v[0], high = v[0];
+    for (const glm::vec3& p : v) {
+      low = glm::min(low, p);
+      high = glm::max(high, p);
+    }
+    json["accessors"].back()["min"] = {low.x, low.y, low.z};
+    json["accessors"].back()["max"] = {high.x, high.y, high.z};
+    return index;
+  }
   int floats(const std::vector<glm::vec2>& v) { return accessor(view(v), 5126, v.size(), "VEC2"); }
   int floats(const std::vector<glm::vec4>& v) { return accessor(view(v), 5126, v.size(), "VEC4"); }
   int indices(const std::vector<std::uint32_t>& v) {
@@ -148,6 +161,14 @@ inline std::filesystem::path scratchFolder(const std::string& name) {
   std::filesystem::remove_all(dir);
   std::filesystem::create_directories(dir);
   return dir;
+}
+
+/// Runs tests/npm/validate_gltf.mjs: 0 good, 1 issues, anything else: cannot run here.
+inline int runValidator(const std::vector<std::string>& arguments) {
+  std::string command = "node '" VERDURE_TEST_DATA "/../npm/validate_gltf.mjs'";
+  for (const std::string& argument : arguments) command += " '" + argument + "'";
+  const int status = std::system(command.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 2;
 }
 
 }  // namespace verdure

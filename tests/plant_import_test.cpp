@@ -1,9 +1,12 @@
 // Import of every way in which glTF can say the same plant.
+#include <assimp/scene.h>
 #include <draco/compression/encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <gtest/gtest.h>
 #include <meshoptimizer.h>
 
+#include <assimp/Exporter.hpp>
+#include <assimp/Importer.hpp>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -508,6 +511,35 @@ TEST(OtherFormats, LoadObjWithItsMaterialsAndMask) {
     EXPECT_EQ(back.meshes[i].positions, plant.meshes[i].positions);
     EXPECT_EQ(back.meshes[i].kind, plant.meshes[i].kind);
   }
+}
+
+TEST(OtherFormats, LoadFbxInItsUnitAndAxes) {
+  const fs::path dir = scratchFolder("fbx");
+  writeFile(dir / "t.obj", "o leaf\nv 0 0 0\nv 100 0 0\nv 0 20 300\nf 1 2 3\n");
+  Assimp::Importer importer;
+  Assimp::Exporter exporter;
+  const aiScene* scene = importer.ReadFile((dir / "t.obj").string(), 0);
+  ASSERT_EQ(exporter.Export(scene, "fbxa", (dir / "y_up.fbx").string()), aiReturn_SUCCESS);
+  // Centimetres, Y up.
+  glm::vec3 size = bounds(loadPlant(dir / "y_up.fbx")).size();
+  EXPECT_LT(glm::length(size - glm::vec3(1.0f, 0.2f, 3.0f)), 1e-5f);
+  // The same numbers with Z up, front along -Y, in metres.
+  const auto bytes = readFile(dir / "y_up.fbx");
+  std::string text(bytes.begin(), bytes.end());
+  const auto set = [&text](const std::string& key, const std::string& value) {
+    const auto at = text.find("\"" + key + "\"");
+    ASSERT_NE(at, std::string::npos) << key;
+    const auto end = text.find('\n', at);
+    text.replace(text.rfind(',', end) + 1, end - text.rfind(',', end) - 1, " " + value);
+  };
+  set("UpAxis", "2");
+  set("FrontAxis", "1");
+  set("FrontAxisSign", "-1");
+  set("UnitScaleFactor", "100");
+  writeFile(dir / "z_up.fbx", text);
+  const Bounds box = bounds(loadPlant(dir / "z_up.fbx"));
+  EXPECT_LT(glm::length(box.min - glm::vec3(0, 0, -20)), 1e-3f);
+  EXPECT_LT(glm::length(box.max - glm::vec3(100, 300, 0)), 1e-3f);
 }
 
 TEST(OtherFormats, LoadPlyAndDae) {

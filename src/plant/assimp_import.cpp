@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cmath>
-#include <map>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "base/files.h"
 #include "plant/gltf_scene.h"
@@ -55,23 +55,30 @@ class AssimpImport {
     throw Error(path_.string(), what, "export the plant again, best as glTF");
   }
 
-  /// FBX counts in centimetres unless it says otherwise; assimp leaves that to its user.
+  /// FBX counts in centimetres unless it says otherwise, with axes that it names; assimp leaves
+  /// both to its user.
   glm::dmat4 rootTransform() const {
-    double unit = 100.0;
     std::string type = path_.extension().string();
     std::transform(type.begin(), type.end(), type.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (type == ".fbx") {
-      unit = 1.0;
-      float single = 0.0f;
-      if (scene_->mMetaData != nullptr && !scene_->mMetaData->Get("UnitScaleFactor", unit) &&
-          scene_->mMetaData->Get("UnitScaleFactor", single))
-        unit = static_cast<double>(single);
-      if (!(unit > 0.0)) unit = 1.0;
+    const aiMetadata* data = scene_->mMetaData;
+    if (type != ".fbx" || data == nullptr) return glm::dmat4(1.0);
+    double unit = 1.0;
+    float single = 0.0f;
+    if (!data->Get("UnitScaleFactor", unit) && data->Get("UnitScaleFactor", single))
+      unit = static_cast<double>(single);
+    if (!(unit > 0.0)) unit = 1.0;
+    glm::dmat4 world(0.0);
+    world[3][3] = 1.0;
+    const char* axes[3] = {"CoordAxis", "UpAxis", "FrontAxis"};  // our X, Y, Z
+    for (int row = 0; row < 3; ++row) {
+      int axis = row, sign = 1;
+      data->Get(axes[row], axis);
+      data->Get(std::string(axes[row]) + "Sign", sign);
+      if (axis >= 0 && axis < 3) world[axis][row] = (sign < 0 ? -0.01 : 0.01) * unit;
     }
-    glm::dmat4 m(unit / 100.0);
-    m[3][3] = 1.0;
-    return m;
+    if (std::abs(glm::determinant(world)) > 0.0) return world;
+    return glm::scale(glm::dmat4(1.0), glm::dvec3(0.01 * unit));
   }
 
   /// The bytes of an image as a material names it: embedded, or beside the file under that path or

@@ -36,13 +36,19 @@ double largestEigenvalue(const std::array<double, 6>& m) {
   return mean + 2.0 * p * std::cos(std::acos(r) / 3.0);
 }
 
+/// Of larger parts the first triangles are looked at: they say what the others are.
+constexpr std::size_t kEnoughTriangles = 50'000;
+
 Pieces measurePieces(const Mesh& mesh) {
   // Pieces are what findLeaves calls leaves: let it find them.
   Plant alone;
   Mesh& copy = alone.meshes.emplace_back();
   copy.kind = PartKind::kFoliage;
-  copy.positions = mesh.positions;
-  copy.indices = mesh.indices;
+  copy.indices.assign(mesh.indices.begin(),
+                      mesh.indices.begin() + static_cast<std::ptrdiff_t>(std::min(
+                                                 mesh.indices.size(), 3 * kEnoughTriangles)));
+  const std::uint32_t last = *std::max_element(copy.indices.begin(), copy.indices.end());
+  copy.positions.assign(mesh.positions.begin(), mesh.positions.begin() + last + 1);
   findLeaves(alone);
   Pieces pieces;
   pieces.count = alone.leaves.size();
@@ -76,7 +82,7 @@ Pieces measurePieces(const Mesh& mesh) {
   if (!sizes.empty()) {
     std::sort(sizes.begin(), sizes.end());
     pieces.median_triangles = sizes[sizes.size() / 2];
-    pieces.largest_share = double(sizes.back()) / double(mesh.triangleCount());
+    pieces.largest_share = double(sizes.back()) / double(copy.triangleCount());
   }
   return pieces;
 }
@@ -154,7 +160,9 @@ Verdict judge(const Plant& plant, const Mesh& mesh, const PartNames& names) {
   if (green) verdict.add(1.0, "green");
 
   const Pieces pieces = measurePieces(mesh);
-  const std::string count = withCommas(pieces.count) + (pieces.count == 1 ? " piece" : " pieces");
+  const bool all = mesh.triangleCount() <= kEnoughTriangles;
+  const std::string count =
+      (all ? "" : "over ") + withCommas(pieces.count) + (pieces.count == 1 ? " piece" : " pieces");
   if (pieces.flatness > 0.75)
     verdict.add(1.5, "flat pieces");
   else if (pieces.flatness < 0.62)

@@ -280,6 +280,15 @@ void parseJson(GltfDocument& document, std::span<const std::uint8_t> text) {
   }
 }
 
+std::vector<std::uint8_t> readBufferFile(const GltfDocument& document, const std::string& uri,
+                                         const std::string& who) {
+  const fs::path path = uriPath(document, uri, who);
+  std::error_code status;
+  if (!fs::is_regular_file(path, status))
+    document.fail(who + ": there is no file " + path.string(), "copy it there");
+  return readFile(path);
+}
+
 void loadBuffers(GltfDocument& document, std::span<const std::uint8_t> bin) {
   const Json& buffers = document.list("buffers");
   for (std::size_t i = 0; i < buffers.size(); ++i) {
@@ -291,7 +300,7 @@ void loadBuffers(GltfDocument& document, std::span<const std::uint8_t> bin) {
       if (auto decoded = decodeDataUri(document, uri, who))
         bytes = std::move(*decoded);
       else
-        bytes = readFile(uriPath(document, uri, who));
+        bytes = readBufferFile(document, uri, who);
     } else if (i == 0 && bin.data() != nullptr) {
       bytes.assign(bin.begin(), bin.end());
     } else if (extension(buffers[i], "EXT_meshopt_compression") != nullptr) {

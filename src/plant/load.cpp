@@ -81,9 +81,13 @@ Plant finish(RawPlant raw, const LoadOptions& options, const std::string& where)
 }  // namespace
 
 std::string withCommas(std::size_t number) {
-  std::string digits = std::to_string(number);
-  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, ",");
-  return digits;
+  const std::string digits = std::to_string(number);
+  std::string text;
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) text += ',';
+    text += digits[i];
+  }
+  return text;
 }
 
 Plant loadPlant(const std::filesystem::path& path, const LoadOptions& options) {

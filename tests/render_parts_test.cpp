@@ -38,6 +38,24 @@ TEST(Mipmaps, ThinThingsDoNotVanish) {
     EXPECT_NEAR(alphaCoverage(level, 0.5f, kCoverageSlope), truth, 0.03) << level.width;
 }
 
+TEST(Mipmaps, CoverageIsThatOfWhatTheMeshReads) {
+  // A thin opaque leaf, one texel in sixteen, and a mesh that hugs it: however far away, nothing of
+  // it may become transparent, although the texture as a whole nearly is.
+  Image image(64, 64);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 30; x < 34; ++x) image.at(x, y)[3] = 255;
+  Mesh mesh;
+  mesh.uvs = {{30 / 64.0f, 0}, {34 / 64.0f, 0}, {34 / 64.0f, 1}, {30 / 64.0f, 1}};
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  UsedTexels used;
+  used.add(mesh);
+  EXPECT_TRUE(used.at(0.5f, 0.5f));
+  EXPECT_FALSE(used.at(0.25f, 0.5f));
+  const MipChain chain = buildColorMips(image, 0.5f, used);
+  for (const gpu::MipLevel& level : chain.levels)
+    EXPECT_GT(alphaCoverage(level, 0.5f, kCoverageSlope, 1.0f, used), 0.9) << level.width;
+}
+
 TEST(Mipmaps, HaveNoHalo) {
   // The leaf image is magenta where it is transparent: no level may show it.
   const MipChain chain = buildColorMips(leafImage(128), 0.5f);

@@ -298,7 +298,7 @@ class GltfImporter {
     from.vertex_of = dropUnused(triangles, count);
     const std::size_t used = from.vertex_of.empty() ? count : from.vertex_of.size();
     from.vertices_per_instance = used;
-    const Placement place = placement(document_, scene, node, primitive, who);
+    const NodePlacement place = placement(document_, scene, node, primitive, who);
     if (place.skinned && place.world_from_local.size() != count)
       document_.fail(who + ": JOINTS_0 and POSITION differ in length");
     total_vertices_ += used * place.instances();
@@ -347,6 +347,7 @@ class GltfImporter {
     }
     part.mesh.material = materialOf(primitive, who);
     readUvs(*attributes, part.mesh, from, count, place.instances(), who);
+    readAmbient(*attributes, part.mesh, from, count, place.instances(), who);
     namePart(part, node, mesh, several);
     noteAttributes(*attributes, primitive, who);
     raw_.parts.push_back(std::move(part));
@@ -412,6 +413,21 @@ class GltfImporter {
     if (bad > 0)
       plant().notes.push_back(
           fmt::format("{} has {} UVs that are not finite: taken as 0", who, withCommas(bad)));
+  }
+
+  /// The light of an earlier bake.
+  void readAmbient(const Json& attributes, Mesh& mesh, const MeshSource& from, std::size_t count,
+                   std::size_t instances, const std::string& who) {
+    const auto accessor = readIndex(document_, attributes, "_AO", "accessors", who);
+    if (!accessor) return;
+    const auto values = readFloats(document_, *accessor, 1, who);
+    if (values.size() != count) document_.fail(who + ": _AO and POSITION differ in length");
+    const std::size_t used = from.vertices_per_instance;
+    mesh.ambient.resize(used * instances);
+    for (std::size_t i = 0; i < mesh.ambient.size(); ++i) {
+      const float k = values[from.vertex_of.empty() ? i % used : from.vertex_of[i % used]];
+      mesh.ambient[i] = std::isfinite(k) ? std::clamp(k, 0.0f, 1.0f) : 1.0f;
+    }
   }
 
   void namePart(RawPart& part, std::size_t node, std::size_t mesh, bool several) {

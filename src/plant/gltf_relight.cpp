@@ -115,7 +115,7 @@ class Relighter {
     for (std::size_t m = first; m < end; ++m) {
       const MeshSource& part = source_.meshes[m];
       const Json& primitive = original_.list("meshes")[part.mesh]["primitives"][part.primitive];
-      const Placement place = placement(original_, scene_, part.node, primitive, "export");
+      const NodePlacement place = placement(original_, scene_, part.node, primitive, "export");
       uses.resize(place.instances());
       for (std::size_t k = 0; k < place.instances(); ++k) {
         PrimitiveLight local = localLight(m, k, place, primitive);
@@ -133,7 +133,7 @@ class Relighter {
   }
 
   /// The light of part `m` for instance `k`, taken back to the space of the accessors.
-  PrimitiveLight localLight(std::size_t m, std::size_t k, const Placement& place,
+  PrimitiveLight localLight(std::size_t m, std::size_t k, const NodePlacement& place,
                             const Json& primitive) const {
     const MeshSource& from = source_.meshes[m];
     const MeshLight& light = light_.meshes[m];

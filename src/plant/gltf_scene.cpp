@@ -177,9 +177,9 @@ void addJoints(const GltfDocument& document, const std::vector<glm::dmat4>& join
 
 }  // namespace
 
-Placement placement(const GltfDocument& document, const GltfScene& scene, std::size_t node,
-                    const Json& primitive, const std::string& who) {
-  Placement result;
+NodePlacement placement(const GltfDocument& document, const GltfScene& scene, std::size_t node,
+                        const Json& primitive, const std::string& who) {
+  NodePlacement result;
   const Json& json = document.list("nodes")[node];
   const Json* attributes = member(primitive, "attributes");
   const auto skin = readIndex(document, json, "skin", "skins", who);

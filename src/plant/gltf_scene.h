@@ -19,7 +19,7 @@ GltfScene readScene(const GltfDocument& document);
 /// How the vertices of a primitive get into the world. Without a skin: one transform per instance
 /// (one in all without EXT_mesh_gpu_instancing). With a skin: one per vertex of the accessors, the
 /// weighted sum of its joints at the rest pose.
-struct Placement {
+struct NodePlacement {
   std::vector<glm::dmat4> world_from_local;
   bool skinned = false;
   std::size_t instances() const { return skinned ? 1 : world_from_local.size(); }
@@ -28,8 +28,8 @@ struct Placement {
   }
 };
 
-Placement placement(const GltfDocument& document, const GltfScene& scene, std::size_t node,
-                    const Json& primitive, const std::string& who);
+NodePlacement placement(const GltfDocument& document, const GltfScene& scene, std::size_t node,
+                        const Json& primitive, const std::string& who);
 
 /// The instances of a node with EXT_mesh_gpu_instancing, relative to the node; empty without.
 struct Instance {

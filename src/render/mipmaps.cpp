@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "base/parallel.h"
 #include "shared/color.h"
@@ -143,21 +144,59 @@ void scaleAlpha(gpu::MipLevel& level, float scale) {
 }
 
 /// The scale of alpha at which the level covers `wanted`; coverage grows with the scale.
-float coverageScale(const gpu::MipLevel& level, float cutoff, double wanted) {
+float coverageScale(const gpu::MipLevel& level, float cutoff, double wanted,
+                    const UsedTexels& used) {
   float low = 0.0f, high = 8.0f;
   for (int step = 0; step < 14; ++step) {
     const float middle = 0.5f * (low + high);
-    (alphaCoverage(level, cutoff, kCoverageSlope, middle) < wanted ? low : high) = middle;
+    (alphaCoverage(level, cutoff, kCoverageSlope, middle, used) < wanted ? low : high) = middle;
   }
   return 0.5f * (low + high);
 }
 
 }  // namespace
 
-double alphaCoverage(const gpu::MipLevel& level, float cutoff, float slope, float scale) {
-  constexpr int kSub = 2;  // samples per texel and direction
+void UsedTexels::add(const Mesh& mesh) {
+  if (mesh.uvs.empty()) return;
+  cells_.resize(std::size_t{kSize} * kSize);
+  constexpr std::size_t kMostTriangles = 4096;
+  const std::size_t step = std::max<std::size_t>(mesh.triangleCount() / kMostTriangles, 1);
+  for (std::size_t t = 0; t < mesh.triangleCount(); t += step) {
+    const glm::vec2 a = mesh.uvs[mesh.indices[3 * t]] * static_cast<float>(kSize),
+                    b = mesh.uvs[mesh.indices[3 * t + 1]] * static_cast<float>(kSize),
+                    c = mesh.uvs[mesh.indices[3 * t + 2]] * static_cast<float>(kSize);
+    const float area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+    const glm::vec2 low = glm::floor(glm::min(a, glm::min(b, c))),
+                    high = glm::floor(glm::max(a, glm::max(b, c)));
+    if (area == 0.0f || high.x - low.x > kSize || high.y - low.y > kSize) continue;
+    for (int y = static_cast<int>(low.y); y <= static_cast<int>(high.y); ++y)
+      for (int x = static_cast<int>(low.x); x <= static_cast<int>(high.x); ++x) {
+        const glm::vec2 p(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+        const auto side = [&](const glm::vec2& u, const glm::vec2& v) {
+          return ((v.x - u.x) * (p.y - u.y) - (v.y - u.y) * (p.x - u.x)) / area;
+        };
+        if (side(a, b) >= 0.0f && side(b, c) >= 0.0f && side(c, a) >= 0.0f)
+          cells_[static_cast<std::size_t>((y & (kSize - 1)) * kSize + (x & (kSize - 1)))] = 1;
+      }
+  }
+  // Triangles smaller than a cell mark nothing; without any mark, nothing is known.
+  if (std::find(cells_.begin(), cells_.end(), 1) == cells_.end()) cells_.clear();
+}
+
+bool UsedTexels::at(float u, float v) const {
+  if (cells_.empty()) return true;
+  const auto cell = [](float t) {
+    return static_cast<std::size_t>(std::clamp(static_cast<int>(t * kSize), 0, kSize - 1));
+  };
+  return cells_[cell(v) * kSize + cell(u)] != 0;
+}
+
+double alphaCoverage(const gpu::MipLevel& level, float cutoff, float slope, float scale,
+                     const UsedTexels& used) {
   const auto w = static_cast<std::size_t>(level.width), h = static_cast<std::size_t>(level.height);
-  std::vector<double> rows(h, 0.0);
+  // Samples per texel and direction: at least as fine as the raster of use.
+  const std::size_t sub = std::max<std::size_t>(2, UsedTexels::kSize / std::min(w, h));
+  std::vector<std::pair<double, std::size_t>> rows(h);
   parallelFor(h, kRowsAtOnce, [&](std::size_t y) {
     for (std::size_t x = 0; x < w; ++x) {
       const auto alpha = [&](std::size_t i, std::size_t j) {
@@ -165,24 +204,34 @@ double alphaCoverage(const gpu::MipLevel& level, float cutoff, float slope, floa
       };
       const float a00 = alpha(x, y), a10 = alpha(x + 1, y), a01 = alpha(x, y + 1),
                   a11 = alpha(x + 1, y + 1);
-      for (int j = 0; j < kSub; ++j)
-        for (int i = 0; i < kSub; ++i) {
-          const float s = (static_cast<float>(i) + 0.5f) / kSub;
-          const float t = (static_cast<float>(j) + 0.5f) / kSub;
+      for (std::size_t j = 0; j < sub; ++j)
+        for (std::size_t i = 0; i < sub; ++i) {
+          // Between the centres of this texel and the next ones.
+          const float s = (static_cast<float>(i) + 0.5f) / static_cast<float>(sub);
+          const float t = (static_cast<float>(j) + 0.5f) / static_cast<float>(sub);
+          const float u = (static_cast<float>(x) + 0.5f + s) / static_cast<float>(w),
+                      v = (static_cast<float>(y) + 0.5f + t) / static_cast<float>(h);
+          if (!used.at(u - std::floor(u), v - std::floor(v))) continue;
           const float a =
               std::min(1.0f, scale * glm::mix(glm::mix(a00, a10, s), glm::mix(a01, a11, s), t));
           const float covered =
               std::isinf(slope) ? (a >= cutoff ? 1.0f : 0.0f) : (a - cutoff) * slope + 0.5f;
-          rows[y] += static_cast<double>(std::clamp(covered, 0.0f, 1.0f));
+          rows[y].first += static_cast<double>(std::clamp(covered, 0.0f, 1.0f));
+          ++rows[y].second;
         }
     }
   });
   double sum = 0.0;
-  for (const double row : rows) sum += row;
-  return sum / static_cast<double>(w * h * kSub * kSub);
+  std::size_t count = 0;
+  for (const auto& [covered, samples] : rows) {
+    sum += covered;
+    count += samples;
+  }
+  return count > 0 ? sum / static_cast<double>(count) : 0.0;
 }
 
-MipChain buildColorMips(const Image& image, std::optional<float> alpha_cutoff) {
+MipChain buildColorMips(const Image& image, std::optional<float> alpha_cutoff,
+                        const UsedTexels& used) {
   const bool alpha = alpha_cutoff.has_value();
   std::vector<Level> levels = allLevels(fromImage(image, true, alpha));
   if (alpha) fillTransparent(levels);
@@ -190,10 +239,10 @@ MipChain buildColorMips(const Image& image, std::optional<float> alpha_cutoff) {
   chain.mean_color = glm::vec3(levels.back().texels[0]);
   for (const Level& level : levels) chain.levels.push_back(toBytes(level, true, alpha));
   if (alpha) {
-    const double wanted =
-        alphaCoverage(chain.levels[0], *alpha_cutoff, std::numeric_limits<float>::infinity());
+    const double wanted = alphaCoverage(chain.levels[0], *alpha_cutoff,
+                                        std::numeric_limits<float>::infinity(), 1.0f, used);
     for (std::size_t i = 1; i < chain.levels.size(); ++i)
-      scaleAlpha(chain.levels[i], coverageScale(chain.levels[i], *alpha_cutoff, wanted));
+      scaleAlpha(chain.levels[i], coverageScale(chain.levels[i], *alpha_cutoff, wanted, used));
   }
   return chain;
 }

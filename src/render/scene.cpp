@@ -37,6 +37,7 @@ class Packer {
     for (const SceneItem& item : scene_.items) any_baked = any_baked || item.light != nullptr;
     out_.bounds = {glm::vec3(std::numeric_limits<float>::max()),
                    glm::vec3(std::numeric_limits<float>::lowest())};
+    for (const SceneItem& item : scene_.items) noteTextureUse(*item.plant);
     for (const SceneItem& item : scene_.items) packItem(item, any_baked);
     if (out_.draws.empty()) out_.bounds = {glm::vec3(-1.0f), glm::vec3(1.0f)};
     std::stable_partition(out_.draws.begin(), out_.draws.end(),
@@ -47,6 +48,18 @@ class Packer {
   }
 
  private:
+  // Before any texture is built: several meshes may share one.
+  void noteTextureUse(const Plant& plant) {
+    for (const Mesh& mesh : plant.meshes) {
+      if (mesh.material >= plant.materials.size() || mesh.uvs.size() != mesh.positions.size())
+        continue;
+      const Material& material = plant.materials[mesh.material];
+      if (material.alpha_mode == AlphaMode::kOpaque || material.base_color_texture < 0) continue;
+      const Texture& texture = textureOf(plant, material.base_color_texture);
+      used_[{&texture.image, TextureJob::Kind::kAlphaCut, textureCutoff(material)}].add(mesh);
+    }
+  }
+
   void packItem(const SceneItem& item, bool any_baked) {
     const Plant& plant = *item.plant;
     if (item.light != nullptr && item.light->meshes.size() != plant.meshes.size())
@@ -132,9 +145,10 @@ class Packer {
     slot.normal_map = 1;
     if (textured && material.base_color_texture >= 0) {
       const Texture& texture = textureOf(plant, material.base_color_texture);
-      slot.base_color = addTexture(
-          draw.alpha_test ? TextureJob{&texture.image, TextureJob::Kind::kAlphaCut, cutoff}
-                          : TextureJob{&texture.image, TextureJob::Kind::kColor, 0.0f});
+      const TextureJob job = draw.alpha_test
+                                 ? TextureJob{&texture.image, TextureJob::Kind::kAlphaCut, cutoff}
+                                 : TextureJob{&texture.image, TextureJob::Kind::kColor, 0.0f};
+      slot.base_color = addTexture(job);
       slot.base_clamp = {texture.clamp_u, texture.clamp_v};
     }
     if (draw.normal_map) {
@@ -163,11 +177,10 @@ class Packer {
         known_textures_.try_emplace(job, static_cast<std::uint32_t>(out_.textures.size()));
     if (is_new) {
       const bool linear = job.kind == TextureJob::Kind::kLinear;
-      out_.textures.push_back(
-          linear ? buildLinearMips(*job.image)
-                 : buildColorMips(*job.image, job.kind == TextureJob::Kind::kAlphaCut
-                                                  ? std::optional(job.cutoff)
-                                                  : std::nullopt));
+      out_.textures.push_back(linear ? buildLinearMips(*job.image)
+                              : job.kind == TextureJob::Kind::kAlphaCut
+                                  ? buildColorMips(*job.image, job.cutoff, used_[job])
+                                  : buildColorMips(*job.image, std::nullopt));
       out_.texture_is_linear.push_back(linear);
     }
     return entry->second;
@@ -183,6 +196,7 @@ class Packer {
 
   const Scene& scene_;
   PackedScene out_;
+  std::map<TextureJob, UsedTexels> used_;
   std::map<TextureJob, std::uint32_t> known_textures_;
 };
 

@@ -12,6 +12,9 @@ layout(push_constant) uniform DrawBlock { DrawUniforms draw; };
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec4 in_normal;
 layout(location = 2) in vec2 uv;
+/// Where a covered sample lies: at the edge of a small leaf the pixel's centre is outside, and its
+/// texture coordinates lie beyond the leaf, where alpha is 0.
+layout(location = 3) centroid in vec2 covered_uv;
 layout(location = 0) out vec4 out_color;
 
 /// Which of the four samples an alpha-cut surface covers. Written here rather than left to the
@@ -44,7 +47,9 @@ vec3 mappedNormal(vec3 n) {
 
 void main() {
   vec4 texel = vec4(1.0);
-  if (kTextures || kAlphaTest) texel = texture(base_color, uv);
+  // Derivatives from the centres, which lie in one plane.
+  if (kTextures || kAlphaTest)
+    texel = textureGrad(base_color, covered_uv, dFdx(uv), dFdy(uv));
   if (kAlphaTest) {
     int mask = coverageMask(texel.a, draw.surface.x);
     gl_SampleMask[0] = mask;

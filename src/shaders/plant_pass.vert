@@ -11,11 +11,13 @@ layout(location = 2) in vec2 uv;
 layout(location = 0) out vec3 out_position;
 layout(location = 1) out vec4 out_normal;  // w = ambient coefficient
 layout(location = 2) out vec2 out_uv;
+layout(location = 3) centroid out vec2 out_covered_uv;
 
 void main() {
   vec4 decoded = decodeNormal(encoded_normal);
   out_position = worldFromPlant(position);
   out_normal = vec4(normalize(worldNormal(decoded.xyz, kFlipNormal)), decoded.w);
   out_uv = uv;
+  out_covered_uv = uv;
   gl_Position = frame.clip_from_world * vec4(out_position, 1.0);
 }

@@ -89,6 +89,9 @@ std::pair<int, int> parseSize(const std::string& text);
 /// Comma-separated numbers; throws Error unless there are `count` of them (0: any).
 std::vector<float> parseNumbers(const std::string& option, const std::string& text,
                                 std::size_t count);
+/// Where a plant stands: at y = 0 where its foot is there and only roots or hanging twigs reach
+/// below, else at its lowest point.
+float groundHeight(const Plant& plant);
 /// The light that a file brought along in `_AO` and NORMAL, if it has any.
 std::optional<CrownLight> lightOfFile(const Plant& plant);
 std::string jsonOf(const DensityReport& report);

@@ -87,6 +87,12 @@ std::pair<int, int> parseSize(const std::string& text) {
   return {width, height};
 }
 
+float groundHeight(const Plant& plant) {
+  const Bounds box = bounds(plant);
+  const bool near_foot = box.min.y < 0.0f && -box.min.y < 0.3f * box.size().y;
+  return near_foot ? 0.0f : box.min.y;
+}
+
 std::optional<CrownLight> lightOfFile(const Plant& plant) {
   CrownLight light;
   bool any = false;
@@ -138,7 +144,7 @@ void runRender(const RenderCommand& command) {
   }
   Scene scene;
   scene.ground = !command.no_ground;
-  scene.ground_height = bounds(plant).min.y;
+  scene.ground_height = groundHeight(plant);
   scene.items.push_back({&plant, light ? &*light : nullptr});
   view.camera =
       parseCamera(command, scene, static_cast<float>(view.width) / static_cast<float>(view.height));

@@ -146,8 +146,8 @@ void scaleAlpha(gpu::MipLevel& level, float scale) {
 /// The scale of alpha at which the level covers `wanted`; coverage grows with the scale.
 float coverageScale(const gpu::MipLevel& level, float cutoff, double wanted,
                     const UsedTexels& used) {
-  float low = 0.0f, high = 8.0f;
-  for (int step = 0; step < 14; ++step) {
+  float low = 0.0f, high = 64.0f;
+  for (int step = 0; step < 18; ++step) {
     const float middle = 0.5f * (low + high);
     (alphaCoverage(level, cutoff, kCoverageSlope, middle, used) < wanted ? low : high) = middle;
   }

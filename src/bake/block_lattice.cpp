@@ -54,20 +54,13 @@ void BlockLattice::evaluate(const DensityField::State& field) {
   values_ = std::make_unique_for_overwrite<float[]>(active_.size() * kBlockPoints);
   ranges_.resize(active_.size());
   const glm::vec3 span = glm::vec3(kBlock - 1) * lattice_.spacing;
-  parallelChunks(active_.size(), 16, [&](std::size_t begin, std::size_t end) {
+  parallelChunks(active_.size(), 64, [&](std::size_t begin, std::size_t end) {
     GeneratorList generators;
     for (std::size_t slot = begin; slot < end; ++slot) {
       const glm::vec3 low = blockLow(field.grid, active_[slot]);
       field.grid.gather(low, low + span, generators);
-      float* const sums = values_.get() + slot * kBlockPoints;
-      sumOnBlock(field.norm, generators, low, lattice_.spacing, sums);
-      float least = field.weight * sums[0], most = least;
-      for (int i = 0; i < kBlockPoints; ++i) {
-        sums[i] *= field.weight;
-        least = std::min(least, sums[i]);
-        most = std::max(most, sums[i]);
-      }
-      ranges_[slot] = {least, most};
+      ranges_[slot] = sumOnBlock(field.norm, field.weight, generators, low, lattice_.spacing,
+                                 values_.get() + slot * kBlockPoints);
     }
   });
 }

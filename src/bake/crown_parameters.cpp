@@ -14,7 +14,7 @@ constexpr float kLargestLeaf = 0.15f;
 
 // rho as a share of the cube root of the crown's volume; Fig. 3 of the paper spans about 0.1 to
 // 0.25 of its tree's size. Small enough to keep the clumps of a crown apart.
-constexpr float kRhoShare = 0.14f;
+constexpr float kRhoShare = 0.16f;
 // A generator inside the crown has at least this many others in reach, on average: fewer make the
 // surface follow single leaves.
 constexpr float kLeastNeighbours = 30.0f;

@@ -199,59 +199,76 @@ struct Layer {
   }
 };
 
-// Calls add(accumulated vector, z term, xy term) for each of a block's vectors of points: the
-// squared relative distance of a point is the sum of the two terms. The accumulators fill eight
+// Calls acc = add(acc, prepared, 1 - xy, z) for each of a block's vectors of points, where xy + z
+// is the squared relative distance to a generator, split by axes. The accumulators fill eight
 // registers of 16 lanes.
 template <class Prepare, class Add>
 void overBlock(const GeneratorList& generators, const glm::vec3& low, float spacing,
                const Prepare& prepare, const Add& add, float* out) {
   const Tag d;
+  const hn::CappedTag<float, kBlockZ> layers;
   const Layer layer(low, spacing);
+  HWY_ALIGN float zs[kBlockZ], z2[kBlockZ];
+  for (int z = 0; z < kBlockZ; ++z) zs[z] = low.z + spacing * static_cast<float>(z);
   constexpr std::size_t kPerLayer = kLayer / kLanes;
+  const V one = hn::Set(d, 1.0f);
   V acc[kPerLayer * kBlockZ];
   for (V& a : acc) a = hn::Zero(d);
   for (std::size_t k = 0; k < generators.count; ++k) {
-    const float inverse2 = generators.inverse_radius[k] * generators.inverse_radius[k];
-    const V scale = hn::Set(d, inverse2), gx = hn::Set(d, generators.x[k]),
+    const float inverse = generators.inverse_radius[k];
+    const V scale = hn::Set(d, inverse * inverse), gx = hn::Set(d, generators.x[k]),
             gy = hn::Set(d, generators.y[k]);
-    V xy[kPerLayer];
+    V rest[kPerLayer];
     for (std::size_t i = 0; i < kPerLayer; ++i) {
       const V ox = hn::Sub(hn::Load(d, layer.x + i * kLanes), gx),
               oy = hn::Sub(hn::Load(d, layer.y + i * kLanes), gy);
-      xy[i] = hn::Mul(hn::MulAdd(ox, ox, hn::Mul(oy, oy)), scale);
+      rest[i] = hn::NegMulAdd(hn::MulAdd(ox, ox, hn::Mul(oy, oy)), scale, one);
     }
-    const auto prepared = prepare(generators.inverse_radius[k], scale);
+    for (std::size_t z = 0; z < kBlockZ; z += hn::Lanes(layers)) {
+      const auto oz = hn::Mul(hn::Sub(hn::Load(layers, zs + z), hn::Set(layers, generators.z[k])),
+                              hn::Set(layers, inverse));
+      hn::Store(hn::Mul(oz, oz), layers, z2 + z);
+    }
+    const auto prepared = prepare(inverse, scale);
     for (std::size_t z = 0; z < kBlockZ; ++z) {
-      const float oz = low.z + spacing * static_cast<float>(z) - generators.z[k];
-      const float z2 = oz * oz * inverse2;
+      const V z_term = hn::Set(d, z2[z]);
       for (std::size_t i = 0; i < kPerLayer; ++i)
-        acc[z * kPerLayer + i] = add(acc[z * kPerLayer + i], prepared, z2, xy[i]);
+        acc[z * kPerLayer + i] = add(acc[z * kPerLayer + i], prepared, rest[i], z_term);
     }
   }
   for (std::size_t i = 0; i < kPerLayer * kBlockZ; ++i) hn::StoreU(acc[i], d, out + i * kLanes);
 }
 
-void SumOnBlock(const Norm& norm, const GeneratorList& generators, const glm::vec3& low,
-                float spacing, float* sums) {
+glm::vec2 SumOnBlock(const Norm& norm, float weight, const GeneratorList& generators,
+                     const glm::vec3& low, float spacing, float* sums) {
   const Tag d;
   if (norm.kind == Norm::Kind::kL2) {
     const V zero = hn::Zero(d);
     overBlock(
         generators, low, spacing, [](float, V) { return 0; },
-        [&](V acc, int, float z2, V xy) {
-          const V w = hn::Max(hn::Sub(hn::Set(d, 1.0f - z2), xy), zero);
+        [&](V acc, int, V rest, V z2) {
+          const V w = hn::Max(hn::Sub(rest, z2), zero);
           return hn::MulAdd(w, w, acc);
         },
         sums);
-    return;
+  } else {
+    const Layer layer(low, spacing);
+    for (int z = 0; z < kBlockZ; ++z) {
+      float zs[kLayer];
+      for (float& v : zs) v = low.z + spacing * static_cast<float>(z);
+      SumAtPoints(norm, generators, {layer.x, layer.y, zs, kLayer},
+                  sums + static_cast<std::size_t>(z) * kLayer);
+    }
   }
-  const Layer layer(low, spacing);
-  for (int z = 0; z < kBlockZ; ++z) {
-    float zs[kLayer];
-    for (float& v : zs) v = low.z + spacing * static_cast<float>(z);
-    SumAtPoints(norm, generators, {layer.x, layer.y, zs, kLayer},
-                sums + static_cast<std::size_t>(z) * kLayer);
+  const V scale = hn::Set(d, weight);
+  V least = hn::Mul(hn::LoadU(d, sums), scale), most = least;
+  for (std::size_t i = 0; i < kBlockPoints; i += kLanes) {
+    const V v = hn::Mul(hn::LoadU(d, sums + i), scale);
+    hn::StoreU(v, d, sums + i);
+    least = hn::Min(least, v);
+    most = hn::Max(most, v);
   }
+  return {hn::GetLane(hn::MinOfLanes(d, least)), hn::GetLane(hn::MaxOfLanes(d, most))};
 }
 
 // |Hessian|_2 of (2) at relative distance s is max(4 (1 - s^2), 12 s^2 - 4) / r^2 inside the
@@ -276,8 +293,8 @@ void CurvatureOnBlock(const GeneratorList& generators, const glm::vec3& low, flo
                         hn::Set(d, (1.0f + delta) * (1.0f + delta)),
                         scale};
       },
-      [&](V acc, const Prepared& p, float z2, V xy) {
-        const V s2 = hn::Add(hn::Set(d, z2), xy);
+      [&](V acc, const Prepared& p, V rest, V z2) {
+        const V s2 = hn::Sub(hn::Add(one, z2), rest);
         const V inner = hn::MulAdd(p.near_slope, s2, p.near_offset);
         const V outer =
             hn::MulSub(twelve, hn::Min(one, hn::MulAdd(p.far_slope, s2, p.far_offset)), four);
@@ -306,9 +323,9 @@ void appendInReach(const GeneratorList& list, std::size_t begin, std::size_t end
   HWY_DYNAMIC_DISPATCH(AppendInReach)(list, begin, end, low, high, euclidean, found);
 }
 
-void sumOnBlock(const Norm& norm, const GeneratorList& generators, const glm::vec3& low,
-                float spacing, float* sums) {
-  HWY_DYNAMIC_DISPATCH(SumOnBlock)(norm, generators, low, spacing, sums);
+glm::vec2 sumOnBlock(const Norm& norm, float weight, const GeneratorList& generators,
+                     const glm::vec3& low, float spacing, float* sums) {
+  return HWY_DYNAMIC_DISPATCH(SumOnBlock)(norm, weight, generators, low, spacing, sums);
 }
 
 void curvatureOnBlock(const GeneratorList& generators, const glm::vec3& low, float spacing,

@@ -21,9 +21,10 @@ void appendInReach(const GeneratorList& list, std::size_t begin, std::size_t end
                    const glm::vec3& low, const glm::vec3& high, bool euclidean,
                    GeneratorList& found);
 
-/// Kernel sums (2), (3) at one block of lattice points, x fastest; `low` is its first point.
-void sumOnBlock(const Norm& norm, const GeneratorList& generators, const glm::vec3& low,
-                float spacing, float* sums);
+/// `weight` times the kernel sums (2), (3) at one block of lattice points, x fastest; `low` is its
+/// first point. Returns the least and the largest of them.
+glm::vec2 sumOnBlock(const Norm& norm, float weight, const GeneratorList& generators,
+                     const glm::vec3& low, float spacing, float* sums);
 
 /// For each of a block's points, a bound of the second derivatives over the lattice cell whose
 /// lowest corner it is: sum over generators of sup |Hessian|_2, so that inside the cell the field

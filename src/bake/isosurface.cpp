@@ -67,7 +67,7 @@ void markNearSurface(const DensityField::State& field, const BlockLattice& coars
                      float tau, BlockLattice& fine) {
   const float h = coarse.lattice().spacing;
   const glm::vec3 span = glm::vec3(kBlock) * h;
-  parallelChunks(coarse.slotCount(), 16, [&](std::size_t begin, std::size_t end) {
+  parallelChunks(coarse.slotCount(), 32, [&](std::size_t begin, std::size_t end) {
     GeneratorList generators;
     std::array<float, kBlockPoints> curvature{};
     for (std::size_t slot = begin; slot < end; ++slot) {

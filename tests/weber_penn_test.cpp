@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include <algorithm>
 #include <cmath>
 
@@ -276,6 +278,37 @@ TEST(Leaves, BendTowardsTheLight) {
   EXPECT_LT(none, some);
   EXPECT_LT(some, all);
   EXPECT_NEAR(all, 1, 1e-3);  // every upper side looks straight up
+}
+
+TEST(Leaves, GoToLongStemsByLength) {
+  const auto grown = [](const char* share) {
+    return growSkeleton(
+        table(std::string("Levels=3 Shape=2 1Branches=30 1Length=0.4 2Branches=20 2Length=0.4 "
+                          "Leaves=40 LeafByLength=") +
+              share),
+        3);
+  };
+  const Skeleton even = grown("0"), by_length = grown("1");
+  // Leaves for each metre of a stem: the number varies with the length only in the paper's way.
+  const auto spread = [](const Skeleton& tree) {
+    std::map<std::uint32_t, int> count;
+    for (const LeafPlace& leaf : tree.leaves) ++count[leaf.branch];
+    float least = 1e9f, most = 0;
+    for (const auto& [branch, leaves] : count) {
+      // Stems of one parent's middle: the same LeafDistrib.
+      const Stem& stem = tree.stems[branch];
+      const float place = stem.offset / stem.parent_length;
+      if (place < 0.45f || place > 0.55f || leaves < 8) continue;
+      const float density = static_cast<float>(leaves) / stem.length;
+      least = std::min(least, density);
+      most = std::max(most, density);
+    }
+    return most / least;
+  };
+  EXPECT_GT(spread(even), 2.0f);
+  EXPECT_LT(spread(by_length), 1.4f);
+  EXPECT_NEAR(static_cast<double>(by_length.leaves.size()), static_cast<double>(even.leaves.size()),
+              0.15 * static_cast<double>(even.leaves.size()));
 }
 
 TEST(Hull, HoldsTheOutline) {

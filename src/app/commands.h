@@ -63,7 +63,7 @@ struct RenderCommand {
   std::string size = "960x720";
   std::string light = "expressive";
   std::string terms;
-  std::string sun = "130,45";
+  std::string sun = "85,42";
   std::string camera = "auto";
   double fov_deg = 34.0;
   std::string background;

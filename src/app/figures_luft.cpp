@@ -38,7 +38,7 @@ class FigureSet {
   FigureSet(const FiguresCommand& command, fs::path folder)
       : folder_(std::move(folder)), renderer_(command.device) {
     std::tie(view_.width, view_.height) = parseSize(command.size);
-    view_.sun_azimuth = 130.0f * kDegree;
+    view_.sun_azimuth = 85.0f * kDegree;
     view_.sun_elevation = 42.0f * kDegree;
   }
 
@@ -193,7 +193,7 @@ Plant surfacePlant(const Surface& surface) {
 
 void drawGroup(FigureSet& figures) {
   // Fig. 1: a group of trees, each baked by itself.
-  const LitPlant group[] = {growLit("black-oak", 3), growLit("silver-birch", 2),
+  const LitPlant group[] = {growLit("black-oak", 4), growLit("silver-birch", 2),
                             growLit("japanese-maple", 4)};
   const glm::vec3 places[] = {{0, 0, -3}, {-9, 0, -1}, {8, 0, 2}};
   Scene scene;
@@ -285,7 +285,7 @@ void runLuftFigures(const FiguresCommand& command) {
   figures.endRow();
 
   progress.show("figure 3");
-  const LitPlant tree = growLit(command.species, 1);
+  const LitPlant tree = growLit(command.species, 4);
   Scene scene;
   scene.items.push_back({&tree.plant, &tree.bake.light});
   figures.view().camera = automaticCamera(scene, 35.0f * kDegree, 4.0f * kDegree, figures.aspect());

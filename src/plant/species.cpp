@@ -36,7 +36,7 @@ Species quakingAspen() {
   // More and smaller leaves; the crown begins where the paper's picture shows it.
   setParameters(s.parameters,
                 "BaseSize=0.3 ScaleV=1.5 0CurveRes=10 1CurveRes=7 2CurveRes=4 "
-                "Leaves=42 LeafShape=1 LeafScale=0.115 LeafScaleX=0.9");
+                "Leaves=42 LeafByLength=1 LeafShape=1 LeafScale=0.115 LeafScaleX=0.9");
   s.bark = {BarkKind::kLenticels,
             {0.80f, 0.79f, 0.70f},
             {0.17f, 0.15f, 0.13f},
@@ -71,7 +71,7 @@ Species blackTupelo() {
   // A middle-aged tree, whose crown the leaves can fill.
   setParameters(s.parameters,
                 "Scale=18 ScaleV=2 2Branches=18 2CurveRes=6 3Branches=10 "
-                "Leaves=9 LeafScale=0.19");
+                "Leaves=9 LeafByLength=1 LeafScale=0.19");
   s.bark = {BarkKind::kBlocks,
             {0.46f, 0.41f, 0.36f},
             {0.15f, 0.13f, 0.11f},
@@ -104,13 +104,13 @@ Species weepingWillow() {
       "Leaves=15 LeafShape=0 LeafScale=0.12 LeafScaleX=0.2 AttractionUp=-3 "
       "PruneRatio=1 PruneWidth=0.4 PruneWidthPeak=0.6 PrunePowerLow=0.001 PrunePowerHigh=0.5");
   // Few long whips (level 3) instead of thousands of short ones, and trunks that part visibly.
-  setParameters(
-      s.parameters,
-      "Scale=14 ScaleV=1.5 Ratio=0.025 RatioPower=1.8 0Length=0.72 "
-      "0SegSplits=0 0SplitAngle=22 1Branches=12 1SegSplits=0.05 1CurveRes=12 "
-      "2Branches=9 2Length=0.75 2SegSplits=0.05 2CurveRes=8 2CurveV=60 "
-      "3DownAngle=40 3Branches=6 3Length=0.7 3LengthV=0.25 3CurveRes=4 3CurveV=40 "
-      "Leaves=21 LeafShape=2 LeafScale=0.19 LeafScaleX=0.24 LeafBend=0.1 AttractionUp=-2");
+  setParameters(s.parameters,
+                "Scale=14 ScaleV=1.5 Ratio=0.025 RatioPower=1.8 0Length=0.72 "
+                "0SegSplits=0 0SplitAngle=22 1Branches=12 1SegSplits=0.05 1CurveRes=12 "
+                "2Branches=9 2Length=0.75 2SegSplits=0.05 2CurveRes=8 2CurveV=60 "
+                "3DownAngle=40 3Branches=6 3Length=0.7 3LengthV=0.25 3CurveRes=4 3CurveV=40 "
+                "Leaves=21 LeafByLength=1 LeafShape=2 LeafScale=0.19 LeafScaleX=0.24 LeafBend=0.1 "
+                "AttractionUp=-2");
   s.bark = {BarkKind::kFurrows,
             {0.47f, 0.42f, 0.34f},
             {0.16f, 0.13f, 0.10f},
@@ -150,7 +150,7 @@ Species blackOak() {
                 "BaseSize=0.2 Scale=11 ScaleV=1.5 0SegSplits=0 0SplitAngle=20 "
                 "1Branches=15 1Length=0.55 1SegSplits=0.1 1Curve=28 1CurveBack=-60 1CurveV=90 "
                 "2Branches=44 2Length=0.28 2CurveRes=4 2CurveV=60 "
-                "Leaves=21 LeafShape=3 LeafScale=0.17 AttractionUp=0.6");
+                "Leaves=21 LeafByLength=1 LeafShape=3 LeafScale=0.17 AttractionUp=0.6");
   s.bark = {BarkKind::kFurrows,
             {0.40f, 0.36f, 0.32f},
             {0.11f, 0.09f, 0.08f},
@@ -177,7 +177,7 @@ Species japaneseMaple() {
                 "2LengthV=0.08 2Taper=1 2CurveRes=6 2Curve=-10 2CurveV=90 "
                 "3DownAngle=48 3DownAngleV=12 3Rotate=-150 3RotateV=25 3Branches=6 3Length=0.4 "
                 "3LengthV=0.05 3Taper=1 3CurveRes=3 3CurveV=60 "
-                "Leaves=18 LeafShape=4 LeafScale=0.09 LeafScaleX=1.05 LeafBend=0.75 "
+                "Leaves=18 LeafByLength=1 LeafShape=4 LeafScale=0.09 LeafScaleX=1.05 LeafBend=0.75 "
                 "AttractionUp=-0.15 PruneRatio=1 PruneWidth=0.52 PruneWidthPeak=0.35 "
                 "PrunePowerLow=0.3 PrunePowerHigh=0.6");
   s.bark = {BarkKind::kSmooth,
@@ -208,7 +208,8 @@ Species scotsPine() {
                 "2LengthV=0.08 2Taper=1 2CurveRes=5 2Curve=-30 2CurveV=90 "
                 "3DownAngle=42 3DownAngleV=12 3Rotate=140 3RotateV=20 3Branches=6 3Length=0.42 "
                 "3LengthV=0.08 3Taper=1 3CurveRes=3 3Curve=-30 3CurveV=40 "
-                "Leaves=9 LeafShape=7 LeafScale=0.17 LeafScaleX=0.72 LeafBend=0 AttractionUp=0.9");
+                "Leaves=9 LeafByLength=0.7 LeafShape=7 LeafScale=0.17 LeafScaleX=0.72 LeafBend=0 "
+                "AttractionUp=0.9");
   s.bark = {BarkKind::kPlates,
             {0.60f, 0.37f, 0.23f},
             {0.19f, 0.11f, 0.08f},
@@ -223,18 +224,19 @@ Species scotsPine() {
 Species silverBirch() {
   Species s;
   s.info = {"silver-birch", "Silver birch (Betula pendula)", kOwn};
-  setParameters(s.parameters,
-                "Shape=4 BaseSize=0.22 Scale=14 ScaleV=1.5 Levels=4 Ratio=0.0115 RatioPower=1.35 "
-                "Lobes=5 LobeDepth=0.03 Flare=0.5 "
-                "0Length=1 0Taper=1 0CurveRes=12 0CurveV=45 "
-                "1DownAngle=48 1DownAngleV=-18 1Rotate=140 1RotateV=20 1Branches=34 1Length=0.32 "
-                "1LengthV=0.05 1Taper=1 1CurveRes=9 1Curve=30 1CurveV=70 "
-                "2DownAngle=42 2DownAngleV=12 2Rotate=140 2RotateV=30 2Branches=18 2Length=0.42 "
-                "2LengthV=0.1 2Taper=1 2CurveRes=7 2Curve=20 2CurveV=60 "
-                "3DownAngle=58 3DownAngleV=18 3Rotate=140 3RotateV=20 3Branches=8 3Length=0.5 "
-                "3LengthV=0.08 3Taper=1 3CurveRes=4 3CurveV=70 "
-                "Leaves=17 LeafShape=5 LeafScale=0.105 LeafScaleX=0.8 LeafBend=0.45 "
-                "AttractionUp=-0.6");
+  setParameters(
+      s.parameters,
+      "Shape=4 BaseSize=0.22 Scale=14 ScaleV=1.5 Levels=4 Ratio=0.0115 RatioPower=1.35 "
+      "Lobes=5 LobeDepth=0.03 Flare=0.5 "
+      "0Length=1 0Taper=1 0CurveRes=12 0CurveV=45 "
+      "1DownAngle=48 1DownAngleV=-18 1Rotate=140 1RotateV=20 1Branches=34 1Length=0.32 "
+      "1LengthV=0.05 1Taper=1 1CurveRes=9 1Curve=30 1CurveV=70 "
+      "2DownAngle=42 2DownAngleV=12 2Rotate=140 2RotateV=30 2Branches=18 2Length=0.42 "
+      "2LengthV=0.1 2Taper=1 2CurveRes=7 2Curve=20 2CurveV=60 "
+      "3DownAngle=58 3DownAngleV=18 3Rotate=140 3RotateV=20 3Branches=8 3Length=0.5 "
+      "3LengthV=0.08 3Taper=1 3CurveRes=4 3CurveV=70 "
+      "Leaves=17 LeafByLength=0.7 LeafShape=5 LeafScale=0.105 LeafScaleX=0.8 LeafBend=0.45 "
+      "AttractionUp=-0.6");
   s.bark = {BarkKind::kPaper,
             {0.90f, 0.89f, 0.86f},
             {0.12f, 0.11f, 0.10f},

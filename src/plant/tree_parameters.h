@@ -36,6 +36,7 @@ struct TreeParameters {
   float leaves = 0, leaf_shape = 0;
   float leaf_scale = 0.1f, leaf_scale_x = 1;
   float leaf_bend = 0.3f, leaf_distrib = 4, leaf_quality = 1;
+  float leaf_by_length = 0;  ///< not of the paper: see weber_penn.cpp, leavesOf
   float attraction_up = 0;
   float prune_ratio = 0, prune_width = 0.5f, prune_width_peak = 0.5f;
   float prune_power_low = 0.5f, prune_power_high = 0.5f;

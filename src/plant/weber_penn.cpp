@@ -128,7 +128,11 @@ glm::quat bendToLight(const glm::quat& frame, const glm::vec3& position, float b
   return glm::normalize(result);
 }
 
-std::vector<LeafPlace> leavesOf(const Tree& tree, const Stem& stem, std::uint32_t index) {
+/// `mean_length`: of all stems that carry leaves. The paper gives each of them the same number,
+/// however short, which crowds the leaves of short branches at the top; LeafByLength moves them to
+/// the long ones and keeps their sum about the same.
+std::vector<LeafPlace> leavesOf(const Tree& tree, const Stem& stem, float mean_length,
+                                std::uint32_t index) {
   const TreeParameters& p = tree.p;
   const LevelParameters& level = p.at(stem.level + 1);
   Random random(hash(stem.stream ^ 0x6c656166ull));
@@ -138,6 +142,7 @@ std::vector<LeafPlace> leavesOf(const Tree& tree, const Stem& stem, std::uint32_
     wanted *= shapeRatio(static_cast<int>(p.leaf_distrib),
                          std::clamp(stem.offset / stem.parent_length, 0.0f, 1.0f), p);
   if (!fan) wanted *= (stem.length - stem.start) / stem.length;
+  if (!fan && p.leaf_by_length > 0) wanted *= std::pow(stem.length / mean_length, p.leaf_by_length);
   const int count = roundAtRandom(wanted, random);
   std::vector<LeafPlace> leaves;
   Spiral spiral(level, random);
@@ -237,9 +242,13 @@ Skeleton growSkeleton(const TreeParameters& p, std::uint64_t seed) {
   }
 
   checkCount(stems.size() - begin, std::abs(p.leaves) * p.leaf_quality, "Leaves");
+  double mean_length = 0;
+  for (std::size_t i = begin; i < stems.size(); ++i)
+    mean_length += double{stems[i].length} / static_cast<double>(stems.size() - begin);
   std::vector<std::vector<LeafPlace>> leaves(stems.size() - begin);
   parallelFor(leaves.size(), 32, [&](std::size_t i) {
-    leaves[i] = leavesOf(tree, stems[begin + i], static_cast<std::uint32_t>(begin + i));
+    leaves[i] = leavesOf(tree, stems[begin + i], static_cast<float>(mean_length),
+                         static_cast<std::uint32_t>(begin + i));
   });
   std::size_t count = 0;
   for (const auto& list : leaves) count += list.size();

@@ -195,7 +195,7 @@ void drawGroup(FigureSet& figures) {
   // Fig. 1: a group of trees, each baked by itself.
   const LitPlant group[] = {growLit("black-oak", 4), growLit("silver-birch", 2),
                             growLit("japanese-maple", 4)};
-  const glm::vec3 places[] = {{0, 0, -3}, {-9, 0, -1}, {8, 0, 2}};
+  const glm::vec3 places[] = {{0, 0, -2}, {-7, 0, -1}, {5.5f, 0, 2.5f}};
   Scene scene;
   for (std::size_t i = 0; i < 3; ++i)
     scene.items.push_back(

@@ -250,6 +250,25 @@ TEST(DensityBake, AFractionOfTheLeavesGivesNearlyTheSameLight) {
   EXPECT_FALSE(bakeDensity(plant, options).light.meshes[1].ambient == part.light.meshes[1].ambient);
 }
 
+TEST(DensityBake, ThresholdsDoNotDependOnTheFraction) {
+  const Plant plant = makeBallCrown(1500);
+  DensityOptions options;
+  const DensityReport full = bakeDensity(plant, options).report;
+  for (const float fraction : {0.3f, 0.05f}) {
+    options.fraction = fraction;
+    const DensityReport part = bakeDensity(plant, options).report;
+    EXPECT_EQ(part.rho, full.rho);
+    EXPECT_EQ(part.tau, full.tau);
+    EXPECT_EQ(part.d_min, full.d_min);
+  }
+  // Nor does a plant that stands alone in a population see other thresholds.
+  const Plant* plants[] = {&plant};
+  const Placement place[] = {{0, {3.0f, 0.0f, 0.0f}}};
+  const DensityReport alone = bakeDensityPopulation(plants, place, options)[0].report;
+  EXPECT_NEAR(alone.tau, full.tau, 1e-3f * full.tau);
+  EXPECT_NEAR(alone.d_min, full.d_min, 1e-3f * full.d_min);
+}
+
 TEST(DensityBake, BlendLeadsFromLeafToCrown) {
   const Plant plant = makeBallCrown(1000);
   DensityOptions options;
@@ -272,6 +291,14 @@ TEST(DensityBake, GivenSurfaceReplacesTheExtractedOne) {
   EXPECT_EQ(bake.report.surface_vertices, 4u);
   EXPECT_TRUE(bake.report.watertight);
   for (const glm::vec3& n : bake.light.meshes[1].normals) ASSERT_NEAR(glm::length(n), 1.0f, 1e-5f);
+  // Triangles without an area lead nowhere, and may not lead astray.
+  Surface thin = given;
+  thin.positions.push_back({0.1f, 0.1f, 0.1f});
+  thin.indices.insert(thin.indices.end(), {5, 5, 5});
+  const DensityBake led = bakeDensity(plant, {}, &thin);
+  for (const glm::vec3& n : led.light.meshes[1].normals) ASSERT_NEAR(glm::length(n), 1.0f, 1e-5f);
+  thin.positions[1].x = NAN;
+  EXPECT_THROW(bakeDensity(plant, {}, &thin), Error);
   given.indices.push_back(77);
   given.indices.push_back(1);
   given.indices.push_back(2);
@@ -332,8 +359,14 @@ TEST(DensityBake, SaysWhatIsWrong) {
   const DensityBake good = bakeDensity(plant);
   const std::string too_high = messageOf(plant, o);
   EXPECT_TRUE(has(too_high, "above the largest kernel sum")) << too_high;
-  EXPECT_TRUE(has(too_high, std::to_string(good.report.field_max_at_generators).substr(0, 4)))
-      << too_high;
+  // The other kinds of normals refuse it as well.
+  o.normals = CrownNormals::kEllipsoid;
+  EXPECT_TRUE(has(messageOf(plant, o), "above the largest kernel sum"));
+  // The maximum it names is that of the field, no lower than at the leaves.
+  const std::size_t number = too_high.find("kernel sum, ") + 12;
+  const float named = std::stof(too_high.substr(number));
+  EXPECT_GE(named, 0.999f * good.report.field_max_at_generators) << too_high;
+  EXPECT_LE(named, 1.5f * good.report.field_max_at_generators) << too_high;
   o = {};
   o.rho = 0.0f;
   EXPECT_TRUE(has(messageOf(plant, o), "rho must be above 0"));

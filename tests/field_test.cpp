@@ -35,7 +35,10 @@ double bruteSum(const std::vector<Generator>& generators, const glm::dvec3& q, c
         break;
       case Norm::Kind::kLp: {
         const double p = norm.p;
-        length = std::pow(std::pow(d.x, p) + std::pow(d.y, p) + std::pow(d.z, p), 1.0 / p);
+        const double m = std::max(d.x, std::max(d.y, d.z));  // else high powers underflow
+        if (m > 0)
+          length = m * std::pow(std::pow(d.x / m, p) + std::pow(d.y / m, p) + std::pow(d.z / m, p),
+                                1.0 / p);
       }
     }
     const double s = length / double{g.radius};
@@ -57,10 +60,9 @@ std::vector<Generator> randomEllipsoid(std::size_t count, float radius, std::uin
 }
 
 const std::vector<Norm>& allNorms() {
-  static const std::vector<Norm> norms = {{Norm::Kind::kL1, 1},
-                                          {Norm::Kind::kL2, 2},
-                                          {Norm::Kind::kLp, 4},
-                                          {Norm::Kind::kLp, 1.5f},
+  static const std::vector<Norm> norms = {{Norm::Kind::kL1, 1},  {Norm::Kind::kL2, 2},
+                                          {Norm::Kind::kLp, 4},  {Norm::Kind::kLp, 1.5f},
+                                          {Norm::Kind::kLp, 32}, {Norm::Kind::kLp, 1000},
                                           {Norm::Kind::kLinf, 0}};
   return norms;
 }
@@ -184,6 +186,27 @@ TEST(DensityField, LatticeMatchesPoints) {
   }
 }
 
+TEST(DensityField, LpHoldsForAnySizeAndPower) {
+  for (const float size : {0.01f, 1.0f, 40.0f})
+    for (const float p : {1.5f, 20.0f, 64.0f, 1000.0f}) {
+      const std::vector<Generator> one = {{{0, 0, 0}, size}};
+      const Norm norm{Norm::Kind::kLp, p};
+      const DensityField field(one, norm);
+      const std::vector<glm::vec3> points = {size * glm::vec3(0.3f, 0.2f, 0.1f),
+                                             size * glm::vec3(-0.5f, 0.5f, 0.0f)};
+      std::vector<float> sums(2);
+      std::vector<glm::vec3> gradients(2);
+      field.gradientAt(points, sums, gradients);
+      for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_NEAR(sums[i], bruteSum(one, points[i], norm), 1e-4) << size << ' ' << p;
+        // Downhill along the ray from the generator: |q| d/d|q| of the kernel.
+        const float s2 = 1 - std::sqrt(sums[i]);
+        EXPECT_NEAR(glm::dot(gradients[i], points[i]), -4 * (1 - s2) * s2, 2e-3f)
+            << size << ' ' << p;
+      }
+    }
+}
+
 TEST(DensityField, RefusesBadGenerators) {
   const std::vector<Generator> nan = {{{0, NAN, 0}, 1}}, flat = {{{0, 0, 0}, 0}};
   EXPECT_THROW(DensityField{nan}, Error);
@@ -191,6 +214,11 @@ TEST(DensityField, RefusesBadGenerators) {
   const std::vector<Generator> good = {{{0, 0, 0}, 1}};
   EXPECT_THROW(DensityField(good, {Norm::Kind::kLp, 0.5f}), Error);
   EXPECT_THROW(DensityField(good).lattice(0), Error);
+  EXPECT_THROW(DensityField({}).lattice(10), Error);
+  const std::vector<Generator> tiny = {{{0, 0, 0}, 1e-25f}},
+                               far = {{{-3e38f, 0, 0}, 1}, {{3e38f, 0, 0}, 1}};
+  EXPECT_THROW(DensityField{tiny}, Error);
+  EXPECT_THROW(DensityField{far}, Error);
   EXPECT_THROW(DensityField(good).surface(DensityField(good).lattice(2000), 0.5f, 1 << 20), Error);
 }
 

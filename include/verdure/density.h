@@ -48,7 +48,7 @@ struct DensityReport {
   std::size_t leaves = 0;             ///< foliage primitives
   std::size_t generators = 0;         ///< those that were used
   std::size_t skipped_leaves = 0;     ///< zero area
-  float field_max_at_generators = 0;  ///< largest kernel sum at a generator (before - tau)
+  float field_max_at_generators = 0;  ///< largest kernel sum at a generator (without - tau)
   float field_min_at_vertices = 0, field_max_at_vertices = 0;  ///< F, i.e. with - tau
   glm::ivec3 grid_points{0};
   float voxel_m = 0;

@@ -35,7 +35,7 @@ Image decodeImage(std::span<const std::uint8_t> file, const std::string& where);
 /// Reads a PNG or JPEG file. Throws Error.
 Image readImage(const std::filesystem::path& path);
 
-/// Encodes as PNG (RGB when every alpha is 255, else RGBA).
+/// Encodes as PNG (RGB when every alpha is 255, else RGBA). Throws Error for 2 GiB or more.
 std::vector<std::uint8_t> encodePng(const Image& image);
 
 /// Writes a PNG atomically (temporary file, then rename). Throws Error.

@@ -58,7 +58,7 @@ struct SceneItem {
 /// origin therefore look the same as at it.
 struct Scene {
   std::vector<SceneItem> items;
-  bool ground = true;  ///< textured ground plane at y = 0 (or at the lowest plant)
+  bool ground = true;  ///< textured ground plane at y = ground_height
   float ground_height = 0.0f;
 };
 

@@ -72,7 +72,6 @@ struct Frame {
   glm::vec3 worldFromPlant(const glm::vec3& p) const {
     return identity ? p : rotation * (scale * p) + translation;
   }
-  glm::vec3 worldDirection(const glm::vec3& d) const { return identity ? d : rotation * d; }
   glm::vec3 plantDirection(const glm::vec3& d) const {
     return identity ? d : glm::transpose(rotation) * d;
   }
@@ -83,7 +82,6 @@ struct CrownField {
   DensityField field;
   float rho = 0.0f;
   CrownThresholds thresholds;
-  float largest_sum = 0.0f;
   bool own_surface =
       true;  ///< extracted from the field, so that the field's gradient is its normal
   std::unique_ptr<Surface> surface;  // where `nearest` refers to it, however this moves
@@ -108,6 +106,31 @@ std::vector<Generator> generatorsAt(const std::vector<glm::vec3>& centers, float
   return generators;
 }
 
+std::vector<glm::vec3> positionsOf(const std::vector<Generator>& generators) {
+  std::vector<glm::vec3> points(generators.size());
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] = generators[i].position;
+  return points;
+}
+
+std::vector<float> sumsAt(const DensityField& field, const std::vector<glm::vec3>& points) {
+  std::vector<float> sums(points.size());
+  field.sumAt(points, sums);
+  return sums;
+}
+
+/// Thresholds of a crown from the field of all its leaves, at some thousand of them: a random
+/// fraction would be noisy and counts each chosen leaf at its own place several times.
+CrownThresholds thresholdsOf(const std::vector<glm::vec3>& centers, float rho,
+                             const DensityOptions& options) {
+  if (options.tau && options.d_min) return {*options.tau, *options.d_min};
+  constexpr std::size_t kMost = 8192;
+  const std::size_t step = (centers.size() + kMost - 1) / kMost;
+  std::vector<glm::vec3> some;
+  for (std::size_t i = 0; i < centers.size(); i += step) some.push_back(centers[i]);
+  const DensityField all(generatorsAt(centers, rho), options.norm);
+  return defaultThresholds(sumsAt(all, some), options);
+}
+
 Surface preparedSurface(const Surface& given) {
   if (given.indices.empty())
     throw Error("surface", "the surface has no triangles", "choose another --surface");
@@ -116,6 +139,8 @@ Surface preparedSurface(const Surface& given) {
   std::vector<std::uint32_t> renamed(given.positions.size(), kNone);
   const bool has_normals = given.normals.size() == given.positions.size();
   for (const std::uint32_t v : given.indices) {
+    if (v < given.positions.size() && !std::isfinite(glm::dot(given.positions[v], glm::vec3(1.0f))))
+      throw Error("surface", fmt::format("position {} is not finite", v), "export it again");
     if (v >= given.positions.size())
       throw Error("surface",
                   fmt::format("index {} points past its {} vertices", v, given.positions.size()),
@@ -154,45 +179,63 @@ void reportSurface(const CrownField& crown, const SurfaceStatistics& statistics,
   report.watertight = crown.nearest->watertight();
 }
 
+void showStep(const DensityOptions& options, const char* step, double share) {
+  if (options.progress) options.progress(step, share);
+}
+
 bool needsSurface(const DensityOptions& options) {
   return options.normals == CrownNormals::kSurfaceVertex ||
          options.normals == CrownNormals::kSurfacePoint;
 }
 
-/// Builds the field, finds its thresholds and, where asked for, its surface. `reference_sums` are
-/// the kernel sums at the leaves from which thresholds are found.
-CrownField makeCrownField(DensityField field, float rho, const std::vector<float>& reference_sums,
-                          const DensityOptions& options, float cell_extent, const Surface* surface,
-                          DensityReport& report) {
+/// A light without surface when tau exceeds everything: says so, with the largest sum that was
+/// seen.
+[[noreturn]] void failAboveMaximum(float tau, float largest) {
+  if (tau < largest)
+    throw Error(kWhere, fmt::format("the grid is too coarse for the surface of tau {:g}", tau),
+                "choose a finer --grid");
+  throw Error(kWhere,
+              fmt::format("tau {:g} is above the largest kernel sum, {:g}: there is no surface",
+                          tau, largest),
+              "choose a smaller --tau");
+}
+
+/// Takes the field and its thresholds and finds the surface where it is asked for. `generators` are
+/// those of the field.
+CrownField makeCrownField(DensityField field, const std::vector<Generator>& generators,
+                          const CrownThresholds& thresholds, const DensityOptions& options,
+                          float cell_extent, const Surface* surface, DensityReport& report) {
   Timer timer;
-  CrownField crown(std::move(field), rho, defaultThresholds(reference_sums, options));
-  crown.largest_sum = *std::max_element(reference_sums.begin(), reference_sums.end());
+  const float rho = generators[0].radius;
+  CrownField crown(std::move(field), rho, thresholds);
+  float largest = 0.0f;
+  for (const float sum : sumsAt(crown.field, positionsOf(generators)))
+    largest = std::max(largest, sum);
   report.rho = rho;
-  report.tau = crown.thresholds.tau;
-  report.d_min = crown.thresholds.d_min;
+  report.tau = thresholds.tau;
+  report.d_min = thresholds.d_min;
   report.k_min = options.k_min;
   report.exponent = options.exponent;
-  report.generators = crown.field.generatorCount();
-  report.field_max_at_generators = crown.largest_sum;
+  report.generators = generators.size();
+  report.field_max_at_generators = largest;
   if (surface != nullptr) {
     crown.setSurface(preparedSurface(*surface));
     crown.own_surface = false;
-    reportSurface(crown, {}, {}, report);
+    Lattice none;
+    none.spacing = 0.0f;
+    reportSurface(crown, {}, none, report);
   } else if (needsSurface(options)) {
-    if (options.progress) options.progress("surface", 0.0);
+    showStep(options, "surface", 0.1);
     const Lattice lattice = crown.field.lattice(options.grid, cell_extent);
     SurfaceStatistics statistics;
     Surface extracted =
-        crown.field.surface(lattice, crown.thresholds.tau, options.max_memory_bytes, &statistics);
+        crown.field.surface(lattice, thresholds.tau, options.max_memory_bytes, &statistics);
     if (extracted.indices.empty())
-      throw Error(kWhere,
-                  fmt::format("tau {:g} is above the largest kernel sum, {:g}: there is no surface",
-                              crown.thresholds.tau, crown.largest_sum),
-                  crown.thresholds.tau > crown.largest_sum
-                      ? "choose a smaller --tau"
-                      : "choose a smaller --tau or a finer --grid");
+      failAboveMaximum(thresholds.tau, std::max(largest, statistics.largest_sum));
     crown.setSurface(std::move(extracted));
     reportSurface(crown, statistics, lattice, report);
+  } else if (thresholds.tau >= largest) {
+    failAboveMaximum(thresholds.tau, largest);
   }
   report.seconds_surface = timer.lap();
   return crown;
@@ -334,14 +377,8 @@ CrownLight bakeLight(const Plant& plant, const Frame& frame, const CrownField& c
   return light;
 }
 
-std::vector<float> sumsAt(const DensityField& field, const std::vector<glm::vec3>& points) {
-  std::vector<float> sums(points.size());
-  field.sumAt(points, sums);
-  return sums;
-}
-
-float weightOf(const std::vector<glm::vec3>& all, const std::vector<glm::vec3>& chosen) {
-  return static_cast<float>(all.size()) / static_cast<float>(chosen.size());
+float weightOf(std::size_t all, std::size_t chosen) {
+  return static_cast<float>(all) / static_cast<float>(chosen);
 }
 
 }  // namespace
@@ -351,15 +388,19 @@ DensityBake bakeDensity(const Plant& plant, const DensityOptions& options, const
   Timer total, timer;
   DensityBake bake;
   DensityReport& report = bake.report;
+  showStep(options, "leaves", 0.0);
   report.leaves = plant.leaves.size();
   const std::vector<glm::vec3> centers = checkedCenters(plant, report.skipped_leaves);
   const float rho = options.rho.value_or(defaultRho(centers));
-  const std::vector<glm::vec3> chosen = randomFraction(centers, options.fraction, options.seed);
-  DensityField field(generatorsAt(chosen, rho), options.norm, weightOf(centers, chosen));
-  const std::vector<float> sums = sumsAt(field, centers);
+  const CrownThresholds thresholds = thresholdsOf(centers, rho, options);
+  const std::vector<Generator> chosen =
+      generatorsAt(randomFraction(centers, options.fraction, options.seed), rho);
+  DensityField field(chosen, options.norm, weightOf(centers.size(), chosen.size()));
   report.seconds_generators = timer.lap();
 
-  CrownField crown = makeCrownField(std::move(field), rho, sums, options, 0.0f, surface, report);
+  CrownField crown =
+      makeCrownField(std::move(field), chosen, thresholds, options, 0.0f, surface, report);
+  showStep(options, "vertices", 0.3);
   bake.light = bakeLight(plant, Frame(), crown, options, report);
   bake.surface = crown.takeSurface();
   report.seconds_total = total.seconds();
@@ -398,30 +439,27 @@ std::vector<DensityBake> bakeDensityPopulation(std::span<const Plant* const> pla
       placed(placements[largest], centers[placements[largest].plant]);
   const float rho = options.rho.value_or(defaultRho(centers[placements[largest].plant]) *
                                          placements[largest].scale);
-  const DensityField alone(generatorsAt(reference, rho), options.norm);
-  const std::vector<float> sums = sumsAt(alone, reference);
-  const Lattice own = alone.lattice(options.grid);
+  const CrownThresholds thresholds = thresholdsOf(reference, rho, options);
+  const Lattice own =
+      DensityField(generatorsAt(reference, rho), options.norm).lattice(options.grid);
 
-  std::vector<glm::vec3> chosen;
+  std::vector<Generator> chosen;
   std::size_t all = 0;
   for (const Placement& placement : placements) {
     const auto part = randomFraction(centers[placement.plant], options.fraction, options.seed);
-    const auto moved = placed(placement, part);
-    chosen.insert(chosen.end(), moved.begin(), moved.end());
+    for (const Generator& g : generatorsAt(placed(placement, part), rho)) chosen.push_back(g);
     all += centers[placement.plant].size();
   }
-  DensityField field(generatorsAt(chosen, rho), options.norm,
-                     static_cast<float>(all) / static_cast<float>(chosen.size()));
+  DensityField field(chosen, options.norm, weightOf(all, chosen.size()));
   DensityReport common;
   common.seconds_generators = timer.lap();
   CrownField crown =
-      makeCrownField(std::move(field), rho, sums, options,
+      makeCrownField(std::move(field), chosen, thresholds, options,
                      own.spacing * static_cast<float>(options.grid), nullptr, common);
 
   std::vector<DensityBake> bakes(placements.size());
   for (std::size_t i = 0; i < placements.size(); ++i) {
-    if (options.progress)
-      options.progress("vertices", static_cast<double>(i) / static_cast<double>(placements.size()));
+    showStep(options, "vertices", static_cast<double>(i) / static_cast<double>(placements.size()));
     bakes[i].report = common;
     bakes[i].report.leaves = plants[placements[i].plant]->leaves.size();
     bakes[i].report.skipped_leaves = skipped[placements[i].plant];

@@ -135,6 +135,7 @@ void DensityField::gradientAt(std::span<const glm::vec3> points, std::span<float
 Lattice DensityField::lattice(int cells, float cell_extent) const {
   if (cells < 1) throw Error("density field", "the grid needs at least one cell", "raise --grid");
   const GeneratorGrid& grid = state_->grid;
+  if (grid.count() == 0) throw Error("density field", "there are no generators");
   const glm::vec3 size = grid.extent() + 2.0f * grid.maxRadius();
   const float longest = std::max(size.x, std::max(size.y, size.z));
   Lattice lattice;

@@ -62,12 +62,19 @@ struct NormLp {
   V power(Tag d, V v, float exponent) const {
     // 0^p = 0: a tiny number instead of 0 keeps the logarithm finite.
     const V x = hn::Max(v, hn::Set(d, 1e-30f));
-    return hn::Exp(d, hn::Mul(hn::Log(d, x), hn::Set(d, exponent)));
+    // Below exp(-80) nothing is left of a term beside 1; far below, Exp itself breaks down.
+    const V log = hn::Mul(hn::Log(d, x), hn::Set(d, exponent));
+    return hn::Exp(d, hn::Max(log, hn::Set(d, -80.0f)));
   }
+  // By the largest component, so that high powers neither vanish nor overflow.
   V length(Tag d, V x, V y, V z) const {
+    const V ax = hn::Abs(x), ay = hn::Abs(y), az = hn::Abs(z);
+    const V most = hn::Max(ax, hn::Max(ay, az));
+    const V inverse = hn::Div(hn::Set(d, 1.0f), hn::Max(most, hn::Set(d, 1e-30f)));
     const V sum =
-        hn::Add(power(d, hn::Abs(x), p), hn::Add(power(d, hn::Abs(y), p), power(d, hn::Abs(z), p)));
-    return power(d, sum, 1.0f / p);
+        hn::Add(power(d, hn::Mul(ax, inverse), p),
+                hn::Add(power(d, hn::Mul(ay, inverse), p), power(d, hn::Mul(az, inverse), p)));
+    return hn::Mul(most, power(d, sum, 1.0f / p));
   }
   V s2(Tag d, V x, V y, V z, V inverse) const {
     const V s = length(d, hn::Mul(x, inverse), hn::Mul(y, inverse), hn::Mul(z, inverse));
@@ -76,7 +83,7 @@ struct NormLp {
   void slope(Tag d, V x, V y, V z, V& gx, V& gy, V& gz) const {
     // grad |o|_p = sign(o_i) (|o_i| / |o|_p)^(p - 1).
     const V l = length(d, x, y, z);
-    const V inverse = hn::Div(hn::Set(d, 1.0f), hn::Max(l, hn::Set(d, 1e-20f)));
+    const V inverse = hn::Div(hn::Set(d, 1.0f), hn::Max(l, hn::Set(d, 1e-30f)));
     const auto component = [&](V v) {
       return hn::CopySign(hn::Mul(l, power(d, hn::Mul(hn::Abs(v), inverse), p - 1.0f)), v);
     };

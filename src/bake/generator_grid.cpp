@@ -26,15 +26,19 @@ GeneratorGrid::GeneratorGrid(std::span<const Generator> generators, Norm::Kind n
   for (std::size_t i = 0; i < generators.size(); ++i) {
     const Generator& g = generators[i];
     const float sum = g.position.x + g.position.y + g.position.z;
-    if (!std::isfinite(sum) || !std::isfinite(g.radius) || !(g.radius > 0.0f))
-      throw Error("density field",
-                  "generator " + std::to_string(i) + " is not finite or has no positive radius",
-                  "check the leaves and rho");
+    // The kernels square the radius and its inverse.
+    if (!std::isfinite(sum) || !(g.radius > 1e-15f) || !(g.radius < 1e15f))
+      throw Error(
+          "density field",
+          "generator " + std::to_string(i) + " is not finite or its radius is not in (1e-15, 1e15)",
+          "check the leaves and rho");
     low = glm::min(low, g.position);
     high = glm::max(high, g.position);
     max_radius_ = std::max(max_radius_, g.radius);
     min_radius_ = std::min(min_radius_, g.radius);
   }
+  if (!std::isfinite(glm::dot(high - low, glm::vec3(1.0f))))
+    throw Error("density field", "the generators are too far apart", "check the leaves");
   origin_ = low;
   extent_ = high - low;
   cell_ = max_radius_ / kCellsPerRadius;

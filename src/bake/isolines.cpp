@@ -23,7 +23,8 @@ std::vector<Polyline> isolines(std::span<const Generator2> generators, float tau
   if (generators.empty()) return {};
   glm::vec2 low(1e30f), high(-1e30f);
   for (const Generator2& g : generators) {
-    if (!std::isfinite(g.position.x + g.position.y) || !(g.radius > 0.0f))
+    if (!std::isfinite(g.position.x + g.position.y) || !std::isfinite(g.radius) ||
+        !(g.radius > 0.0f))
       throw Error("isolines", "a generator is not finite or has no positive radius");
     low = glm::min(low, g.position - g.radius);
     high = glm::max(high, g.position + g.radius);

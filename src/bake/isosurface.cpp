@@ -67,6 +67,7 @@ void markNearSurface(const DensityField::State& field, const BlockLattice& coars
                      float tau, BlockLattice& fine) {
   const float h = coarse.lattice().spacing;
   const glm::vec3 span = glm::vec3(kBlock) * h;
+  const float reach = glm::length(field.grid.extent()) + field.grid.maxRadius();
   parallelChunks(coarse.slotCount(), 32, [&](std::size_t begin, std::size_t end) {
     GeneratorList generators;
     std::array<float, kBlockPoints> curvature{};
@@ -83,6 +84,10 @@ void markNearSurface(const DensityField::State& field, const BlockLattice& coars
                           (field.grid.minRadius() * field.grid.minRadius());
       if (highest + rough <= 0.999f * tau) continue;
       curvatureOnBlock(generators, low, h, curvature.data());
+      // Rounding: of sums of positive float terms, and of positions far from the origin, which move
+      // a kernel by at most 1.54 of its height a radius.
+      const float slack = 1e-5f + 6e-8f * (static_cast<float>(generators.count) +
+                                           4.0f * reach / field.grid.minRadius());
       for (int z = 0; z < kBlockZ; ++z)
         for (int y = 0; y < kBlockY; ++y)
           for (int x = 0; x < kBlockX; ++x) {
@@ -94,9 +99,8 @@ void markNearSurface(const DensityField::State& field, const BlockLattice& coars
               most = std::max(most, v);
             }
             const auto own = static_cast<std::size_t>(x + kBlockX * (y + kBlockY * z));
-            // The last term covers rounding: sums of float terms, all positive.
             const float bound =
-                0.375f * h * h * field.weight * curvature[own] + 1e-5f * (most + tau);
+                0.375f * h * h * field.weight * curvature[own] + slack * (most + tau);
             if (most + bound <= tau || least - bound > tau) continue;
             const glm::ivec3 from = step * (block * kBlock + glm::ivec3(x, y, z));
             fine.markPoints(from, from + step);
@@ -352,11 +356,13 @@ Surface DensityField::surface(const Lattice& lattice, float tau, std::size_t max
     markNearSurface(*state_, coarse, step, tau, fine);
     fine.assignSlots();
     stats.bytes = coarse.bytes();
+    stats.largest_sum = coarse.largest();
   }
   checkMemory(stats.bytes + fine.bytes(), max_bytes);
   fine.evaluate(*state_);
   stats.grid_points_evaluated = fine.slotCount() * kBlockPoints;
   stats.bytes += fine.bytes();
+  stats.largest_sum = std::max(stats.largest_sum, fine.largest());
   return Extractor(*state_, fine, tau).run(stats);
 }
 

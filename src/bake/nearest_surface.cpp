@@ -90,9 +90,7 @@ struct NearestSurface::Tree {
   Cloud cloud;
   Index index;
   explicit Tree(const std::vector<glm::vec3>& points)
-      : cloud{points}, index(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(16)) {
-    index.buildIndex();
-  }
+      : cloud{points}, index(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(16)) {}
   /// `hint` is any vertex; the nearer it is, the less is searched. The result does not depend on
   /// it.
   std::uint32_t search(const glm::vec3& point, std::uint32_t hint) const {
@@ -103,7 +101,8 @@ struct NearestSurface::Tree {
     result.distance2 *= 1.0f + 1e-6f;
     result.index = std::numeric_limits<std::uint32_t>::max();
     index.findNeighbors(result, &point.x, nanoflann::SearchParams());
-    return result.index;
+    // Rounding in the tree may hide the hint from itself.
+    return result.index < cloud.points.size() ? result.index : hint;
   }
 };
 
@@ -159,6 +158,11 @@ NearestSurface::Point NearestSurface::point(const glm::vec3& from, std::uint32_t
     }
     if (next == v || most > 1.0f) break;
     v = next;
+  }
+  if (triangle == nullptr) {  // all its triangles are degenerate
+    result.position = surface_.positions[result.vertex];
+    result.normal = surface_.normals[result.vertex];
+    return result;
   }
   glm::vec3 normal(0.0f);
   for (int k = 0; k < 3; ++k) {

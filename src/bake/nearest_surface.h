@@ -10,7 +10,7 @@ namespace verdure {
 /// Finds the vertex or point of a surface that is nearest to a point.
 class NearestSurface {
  public:
-  /// `surface` must outlive this and have at least one triangle.
+  /// `surface` must outlive this; every vertex finite and corner of a triangle with an area.
   explicit NearestSurface(const Surface& surface);
   ~NearestSurface();
 

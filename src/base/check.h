@@ -24,6 +24,5 @@ template <class A, class B>
   ((a)op(b) ? void() : ::verdure::checkFailed(__FILE__, __LINE__, #a " " #op " " #b, (a), (b)))
 #define VERDURE_CHECK_EQ(a, b) VERDURE_CHECK_OP(a, ==, b)
 #define VERDURE_CHECK_LT(a, b) VERDURE_CHECK_OP(a, <, b)
-#define VERDURE_CHECK_LE(a, b) VERDURE_CHECK_OP(a, <=, b)
 
 #endif  // VERDURE_BASE_CHECK_H_

@@ -21,10 +21,13 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 namespace verdure {
 
 Image decodeImage(std::span<const std::uint8_t> file, const std::string& where) {
+  if (file.size() > std::size_t{std::numeric_limits<int>::max()})
+    throw Error(where, "image file over 2 GiB", "use a smaller image");
   int width = 0, height = 0, channels = 0;
   std::uint8_t* pixels = stbi_load_from_memory(file.data(), static_cast<int>(file.size()), &width,
                                                &height, &channels, 4);
@@ -42,6 +45,9 @@ Image readImage(const std::filesystem::path& path) {
 }
 
 std::vector<std::uint8_t> encodePng(const Image& image) {
+  // The encoder counts bytes in int.
+  if (image.rgba.size() >= std::size_t{std::numeric_limits<int>::max()})
+    throw Error("PNG", "the image has 2 GiB or more", "make it smaller");
   const std::size_t pixels = image.rgba.size() / 4;
   bool opaque = true;
   for (std::size_t i = 0; i < pixels && opaque; ++i) opaque = image.rgba[4 * i + 3] == 255;
@@ -52,7 +58,7 @@ std::vector<std::uint8_t> encodePng(const Image& image) {
   }
   const int channels = opaque ? 3 : 4;
   std::vector<std::uint8_t> bytes;
-  stbi_write_png_to_func(
+  const int written = stbi_write_png_to_func(
       [](void* out, void* data, int size) {
         auto& sink = *static_cast<std::vector<std::uint8_t>*>(out);
         const auto* begin = static_cast<const std::uint8_t*>(data);
@@ -60,6 +66,7 @@ std::vector<std::uint8_t> encodePng(const Image& image) {
       },
       &bytes, image.width, image.height, channels, opaque ? rgb.data() : image.rgba.data(),
       image.width * channels);
+  if (written == 0) throw Error("PNG", "the image cannot be encoded", "make it smaller");
   return bytes;
 }
 

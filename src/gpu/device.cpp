@@ -95,8 +95,9 @@ Device::Device(const std::string& name, bool validation) : messages_(std::make_u
   const float priority = 1.0f;
   const vk::DeviceQueueCreateInfo queue{
       .queueFamilyIndex = family_, .queueCount = 1, .pQueuePriorities = &priority};
-  const vk::PhysicalDeviceFeatures features{.samplerAnisotropy =
-                                                physical_.getFeatures().samplerAnisotropy};
+  const vk::PhysicalDeviceFeatures available = physical_.getFeatures();
+  const vk::PhysicalDeviceFeatures features{.fullDrawIndexUint32 = available.fullDrawIndexUint32,
+                                            .samplerAnisotropy = available.samplerAnisotropy};
   // Software drivers walk every texel of a footprint: minutes for ground seen at a grazing angle.
   const bool software = physical_.getProperties().deviceType == vk::PhysicalDeviceType::eCpu;
   if (features.samplerAnisotropy && !software) max_anisotropy_ = limits_.maxSamplerAnisotropy;
@@ -133,7 +134,11 @@ void Device::chooseDevice(const std::string& name) {
       seen += (seen.empty() ? "" : ", ") + device_name + " " + reason;
       continue;
     }
-    const int rank = properties.deviceType == vk::PhysicalDeviceType::eDiscreteGpu ? 1 : 0;
+    const auto type = properties.deviceType;
+    const int rank = type == vk::PhysicalDeviceType::eDiscreteGpu     ? 3
+                     : type == vk::PhysicalDeviceType::eIntegratedGpu ? 2
+                     : type == vk::PhysicalDeviceType::eVirtualGpu    ? 1
+                                                                      : 0;
     if (rank <= best_rank) continue;
     best_rank = rank;
     family_ = static_cast<std::uint32_t>(graphics - families.begin());

@@ -37,8 +37,8 @@ Allocation MemoryPool::allocate(const vk::MemoryRequirements& need, MemoryUse us
   std::erase_if(blocks_, [](const auto& block) { return block.expired(); });
   for (const std::weak_ptr<MemoryBlock>& weak : blocks_) {
     const std::shared_ptr<MemoryBlock> block = weak.lock();
-    // Software drivers have one type for all uses: a block that is not mapped must not be handed out
-    // to be written.
+    // Software drivers have one type for all uses: a block that is not mapped must not be handed
+    // out to be written.
     const bool mapped = block->mapped != nullptr;
     if (block->type != type || block->images != for_image || mapped != wants_mapping) continue;
     const vk::DeviceSize offset =

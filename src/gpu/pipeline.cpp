@@ -47,8 +47,7 @@ vk::raii::Pipeline makeGraphicsPipeline(const Device& device, const GraphicsRequ
       .depthBiasEnable = request.depth_bias_slope != 0.0f,
       .depthBiasSlopeFactor = request.depth_bias_slope,
       .lineWidth = 1.0f};
-  const vk::PipelineMultisampleStateCreateInfo multisample{
-      .rasterizationSamples = request.samples, .alphaToCoverageEnable = request.alpha_to_coverage};
+  const vk::PipelineMultisampleStateCreateInfo multisample{.rasterizationSamples = request.samples};
   const vk::PipelineDepthStencilStateCreateInfo depth{.depthTestEnable = true,
                                                       .depthWriteEnable = request.depth_write,
                                                       .depthCompareOp = request.depth_compare};

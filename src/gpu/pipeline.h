@@ -28,7 +28,6 @@ struct GraphicsRequest {
   vk::CompareOp depth_compare = vk::CompareOp::eGreater;
   bool depth_write = true;
   float depth_bias_slope = 0.0f;  ///< 0 = no bias
-  bool alpha_to_coverage = false;
 };
 
 vk::raii::Pipeline makeGraphicsPipeline(const Device& device, const GraphicsRequest& request);

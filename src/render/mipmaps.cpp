@@ -162,13 +162,18 @@ void UsedTexels::add(const Mesh& mesh) {
   constexpr std::size_t kMostTriangles = 4096;
   const std::size_t step = std::max<std::size_t>(mesh.triangleCount() / kMostTriangles, 1);
   for (std::size_t t = 0; t < mesh.triangleCount(); t += step) {
-    const glm::vec2 a = mesh.uvs[mesh.indices[3 * t]] * static_cast<float>(kSize),
-                    b = mesh.uvs[mesh.indices[3 * t + 1]] * static_cast<float>(kSize),
-                    c = mesh.uvs[mesh.indices[3 * t + 2]] * static_cast<float>(kSize);
+    const std::uint32_t* corner = &mesh.indices[3 * t];
+    if (std::max(corner[0], std::max(corner[1], corner[2])) >= mesh.uvs.size()) continue;
+    const glm::vec2 a = mesh.uvs[corner[0]] * static_cast<float>(kSize),
+                    b = mesh.uvs[corner[1]] * static_cast<float>(kSize),
+                    c = mesh.uvs[corner[2]] * static_cast<float>(kSize);
     const float area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     const glm::vec2 low = glm::floor(glm::min(a, glm::min(b, c))),
                     high = glm::floor(glm::max(a, glm::max(b, c)));
-    if (area == 0.0f || high.x - low.x > kSize || high.y - low.y > kSize) continue;
+    // Far from 0 floats are coarser than cells, and integers end.
+    const float farthest = std::max(glm::length(low), glm::length(high));
+    if (area == 0.0f || high.x - low.x > kSize || high.y - low.y > kSize || !(farthest < 1e6f))
+      continue;
     for (int y = static_cast<int>(low.y); y <= static_cast<int>(high.y); ++y)
       for (int x = static_cast<int>(low.x); x <= static_cast<int>(high.x); ++x) {
         const glm::vec2 p(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);

@@ -106,6 +106,8 @@ class Packer {
       throw Error(where, "has an index past its last vertex");
     if (out_.positions.size() + count > std::size_t{std::numeric_limits<std::int32_t>::max()})
       throw Error(where, "the scene has over 2^31 vertices", "use instances");
+    if (out_.indices.size() + mesh.indices.size() > std::size_t{0xffffffffu})
+      throw Error(where, "the scene has over 2^32 indices", "use instances");
 
     Draw draw;
     draw.foliage = mesh.kind == PartKind::kFoliage;

@@ -31,25 +31,26 @@ int coverageMask(float alpha, float cutoff) {
 /// Normal map without vertex tangents: the frame follows from the screen derivatives of position
 /// and texture coordinates (Schueler, "Followup: Normal Mapping Without Precomputed Tangents",
 /// 2013). glTF's maps have green up, against its v.
-vec3 mappedNormal(vec3 n) {
-  vec3 p_x = dFdx(position), p_y = dFdy(position);
-  vec2 uv_x = dFdx(uv), uv_y = dFdy(uv);
+vec3 mappedNormal(vec3 n, vec3 p_x, vec3 p_y, vec2 uv_x, vec2 uv_y) {
   vec3 x_perpendicular = cross(p_y, n), y_perpendicular = cross(n, p_x);
   float handedness = dot(p_x, x_perpendicular) < 0.0 ? -1.0 : 1.0;
   vec3 t = (x_perpendicular * uv_x.x + y_perpendicular * uv_y.x) * handedness;
   vec3 b = (x_perpendicular * uv_x.y + y_perpendicular * uv_y.y) * -handedness;
   float longest = max(dot(t, t), dot(b, b));
   if (longest <= 0.0) return n;
-  vec3 m = texture(normal_map, uv).xyz * (255.0 / 127.0) - (128.0 / 127.0);
+  vec3 m = textureGrad(normal_map, uv, uv_x, uv_y).xyz * (255.0 / 127.0) - (128.0 / 127.0);
   m.xy *= draw.surface.y;
   return normalize((t * m.x + b * m.y) * inversesqrt(longest) + n * max(m.z, 0.05));
 }
 
 void main() {
+  // Derivatives come first: behind the discard below they are not defined.
+  vec3 p_x = dFdx(position), p_y = dFdy(position);
+  vec2 uv_x = dFdx(uv), uv_y = dFdy(uv);
   vec4 texel = vec4(1.0);
   // Derivatives from the centres, which lie in one plane.
   if (kTextures || kAlphaTest)
-    texel = textureGrad(base_color, covered_uv, dFdx(uv), dFdy(uv));
+    texel = textureGrad(base_color, covered_uv, uv_x, uv_y);
   if (kAlphaTest) {
     int mask = coverageMask(texel.a, draw.surface.x);
     gl_SampleMask[0] = mask;
@@ -61,12 +62,15 @@ void main() {
 
   vec3 n = normalize(in_normal.xyz);
   if (kFlipNormal && !gl_FrontFacing) n = -n;
-  if (kNormalMap && kTextures) n = mappedNormal(n);
+  if (kNormalMap && kTextures) n = mappedNormal(n, p_x, p_y, uv_x, uv_y);
   vec3 l = frame.to_sun.xyz;
   vec3 v = normalize(frame.eye.xyz - position);
 
   float visibility = 1.0;
-  if (kShadow) visibility = sunVisibility(position, normalize(cross(dFdx(position), dFdy(position))));
+  if (kShadow) {
+    vec3 face = cross(p_x, p_y);
+    visibility = sunVisibility(position, dot(face, face) > 0.0 ? normalize(face) : n);
+  }
   float k_a = kAmbient ? (kBakedAmbient ? in_normal.w : 1.0) : 0.0;
   float diffuse = kDiffuse ? diffuseFactor(n, l) : 0.0;
   float specular = kSpecular ? specularFactor(n, l, v, draw.surface.w) : 0.0;

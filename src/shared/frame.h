@@ -10,7 +10,7 @@ SHARED_BEGIN
 struct FrameUniforms {
   mat4 clip_from_world;
   mat4 shadow_from_world;  ///< x, y in [0, 1] over the shadow map, z = its depth
-  vec4 eye;                ///< xyz; w = 1 / width of the image
+  vec4 eye;                ///< xyz
   vec4 to_sun;             ///< unit; w = size of a shadow map texel, m
   vec4 sun_color;          ///< w = 1 / size of the shadow map
   vec4 ambient_color;

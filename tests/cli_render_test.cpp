@@ -83,6 +83,25 @@ TEST_F(CommandLineRender, OptionsOfTheView) {
   EXPECT_EQ(mean(empty, 2), 255.0);
 }
 
+TEST_F(CommandLineRender, StandsOnZeroWhereAStrandHangsBelow) {
+  // Leaves from 0 to 4 m, and one 0.5 m below: seen from the height of -0.25 m, the camera is below
+  // the ground at 0, and above one at the lowest leaf.
+  std::vector<glm::vec3> corners;
+  for (int i = 0; i < 40; ++i)
+    corners.emplace_back(0.2f * static_cast<float>(i % 3), 0.1f * static_cast<float>(i), 0);
+  const Words view = {"--camera", "0,-0.25,30,0,-0.25,60", "--background", "1,0,0", "--light",
+                      "standard"};
+  writeFile(path("standing.glb"), LeafFile(corners).glb());
+  const Image standing = picture(path("standing.glb"), view);
+  corners.emplace_back(0.0f, -0.5f, 0.0f);
+  writeFile(path("hanging.glb"), LeafFile(corners).glb());
+  EXPECT_EQ(difference(standing, picture(path("hanging.glb"), view)), 0.0);
+  // Modelled around 0, it stands on its lowest leaf.
+  corners.emplace_back(0.0f, -3.0f, 0.0f);
+  writeFile(path("around.glb"), LeafFile(corners).glb());
+  EXPECT_GT(difference(standing, picture(path("around.glb"), view)), 5.0);
+}
+
 TEST_F(CommandLineRender, Refuses) {
   const std::string tree = smallTree();
   const auto refused = [&](const Words& options, const Words& said) {

@@ -42,6 +42,16 @@ Terms parseTerms(const RenderCommand& command) {
   return terms;
 }
 
+/// Plants stand on the zero of their own heights, where strands may hang below it; those that were
+/// modelled around or away from it stand on their lowest point.
+float groundHeight(const Plant& plant) {
+  constexpr float kMostBelow = 0.25f;  // share of the height
+  const Bounds box = bounds(plant);
+  const bool from_zero = plant.origin == glm::dvec3(0.0) && box.min.y <= 0.0f &&
+                         -box.min.y < kMostBelow * box.size().y;
+  return from_zero ? 0.0f : box.min.y;
+}
+
 Camera parseCamera(const RenderCommand& command, const Scene& scene, float aspect) {
   const float fov = radians(static_cast<float>(command.fov_deg));
   if (command.camera == "auto")
@@ -153,7 +163,7 @@ void runRender(const RenderCommand& command) {
   }
   Scene scene;
   scene.ground = !command.no_ground;
-  scene.ground_height = bounds(plant).min.y;
+  scene.ground_height = groundHeight(plant);
   scene.items.push_back({&plant, light ? &*light : nullptr});
   view.camera =
       parseCamera(command, scene, static_cast<float>(view.width) / static_cast<float>(view.height));

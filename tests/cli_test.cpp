@@ -380,14 +380,22 @@ TEST_F(CommandLine, AKilledBakeLeavesNoPartOfAFile) {
   const auto complete = readFile(out);
   fs::remove(out);
   int killed = 0, finished = 0;
-  constexpr int kRounds = 24;
-  for (int round = 0; round < kRounds; ++round) {
+  constexpr int kTimed = 14, kWatched = 6;  // killed after a time, or at the sight of a new name
+  for (int round = 0; round < kTimed + kWatched; ++round) {
     // Half of the rounds replace a file.
     if (round % 2 == 0) fs::remove(out);
     if (round % 2 == 1) writeFile(out, "old");
     const pid_t child = start({"bake", tree, "-o", out}, logs_ / "out", logs_ / "err");
     ASSERT_GT(child, 0);
-    std::this_thread::sleep_for(whole * round / (kRounds - 4));
+    if (round < kTimed) {
+      std::this_thread::sleep_for(whole * round / (kTimed - 3));
+    } else {
+      const auto until = std::chrono::steady_clock::now() + 3 * whole;
+      const auto names = std::distance(fs::directory_iterator(dir_), fs::directory_iterator());
+      while (std::distance(fs::directory_iterator(dir_), fs::directory_iterator()) == names &&
+             std::chrono::steady_clock::now() < until) {
+      }
+    }
     kill(child, SIGKILL);
     int status = 0;
     ASSERT_EQ(waitpid(child, &status, 0), child);

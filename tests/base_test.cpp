@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <atomic>
 #include <filesystem>
@@ -44,6 +45,12 @@ TEST(Files, SayWhatIsWrong) {
   EXPECT_THROW(writeFile(dir / "no" / "such" / "folder.txt", "x"), Error);
   EXPECT_THROW(writeFile(dir, "x"), Error);
   EXPECT_THROW(checkWritable("/proc/verdure.glb"), Error);
+  // A rename would put a file in the place of a pipe or a device.
+  ASSERT_EQ(::mkfifo((dir / "pipe").c_str(), 0600), 0);
+  EXPECT_THROW(readFile(dir / "pipe"), Error);
+  EXPECT_THROW(writeFile(dir / "pipe", "x"), Error);
+  EXPECT_TRUE(fs::is_fifo(dir / "pipe"));
+  EXPECT_THROW(checkWritable("/dev/null"), Error);
 }
 
 TEST(Parallel, CoversEveryIndexOnceInRangesThatIgnoreTheThreadCount) {

@@ -84,6 +84,8 @@ void runLuftFigures(const FiguresCommand& command);
 
 // Shared by the commands.
 
+/// Throws Error unless a file can be written at `path` and its name ends in one of `extensions`.
+void checkOutput(const std::string& path, const std::vector<std::string>& extensions);
 /// "960x720" to two numbers. Throws Error.
 std::pair<int, int> parseSize(const std::string& text);
 /// Comma-separated numbers; throws Error unless there are `count` of them (0: any).

@@ -268,6 +268,8 @@ void drawTerms(FigureSet& figures) {
 
 void runLuftFigures(const FiguresCommand& command) {
   const fs::path folder(command.output);
+  speciesParameters(command.species);  // throws if there is no such species
+  FigureSet figures(command, folder);
   std::error_code problem;
   fs::create_directories(folder, problem);
   if (problem)
@@ -275,7 +277,6 @@ void runLuftFigures(const FiguresCommand& command) {
                 "choose another with -o");
   checkWritable(folder / "index.html");
   Progress progress("figures luft");
-  FigureSet figures(command, folder);
   progress.show("figure 1");
   drawGroup(figures);
 

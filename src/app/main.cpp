@@ -16,15 +16,16 @@ void addLoadOptions(CLI::App& command, LoadOptions& load) {
   command
       .add_option("--foliage", load.foliage,
                   "Material, mesh or node that is foliage (name, * matches anything; repeatable)")
-      ->type_name("NAME");
+      ->type_name("NAME")
+      ->allow_extra_args(false);
   command
       .add_option("--wood", load.wood, "Material, mesh or node that is not foliage (repeatable)")
-      ->type_name("NAME");
+      ->type_name("NAME")
+      ->allow_extra_args(false);
 }
 
-void addBakeOptions(CLI::App& command, BakeParameters& bake) {
+void addBakeOptions(CLI::App& command, BakeParameters& bake, const char* group) {
   DensityOptions& o = bake.options;
-  const char* group = "Density field";
   command.add_option("--rho", o.rho, "Radius of influence of a leaf, m (default: from the crown)")
       ->group(group);
   command
@@ -73,10 +74,19 @@ void addDeviceOptions(CLI::App& command, DeviceOptions& device) {
   command.add_flag("--validation", device.validation, "Check the use of Vulkan (slow)");
 }
 
+/// Prints one line, whatever bytes the names of files and parts hold.
+int fail(const std::string& message) {
+  std::string line = "verdure: " + message;
+  for (char& c : line)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+  std::fprintf(stderr, "%s\n", line.c_str());
+  return 2;
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"verdure: vegetation, grown, lit and rendered", "verdure"};
   app.set_version_flag("--version", std::string("verdure ") + VERDURE_VERSION);
-  app.require_subcommand(1);
+  app.fallthrough();  // --threads may stand behind the command
   app.set_help_all_flag("--help-all", "Help of all commands");
   app.option_defaults()->always_capture_default(false);
   int threads = 0;
@@ -91,7 +101,8 @@ int run(int argc, char** argv) {
   grow_app->add_option("--seed", grow.grow.seed, "Each seed is another tree")
       ->capture_default_str();
   grow_app->add_option("--set", grow.assignments, "Override a parameter, see --parameters")
-      ->type_name("PARAM=VALUE");
+      ->type_name("PARAM=VALUE")
+      ->allow_extra_args(false);
   grow_app->add_option("--leaves", grow.leaves, "mesh (folded blades) or card (one quad a leaf)")
       ->capture_default_str();
   grow_app->add_option("--texture-size", grow.grow.texture_size, "Side of its textures, pixels")
@@ -113,7 +124,7 @@ int run(int argc, char** argv) {
   bake_app->add_option("file", bake.input, "Plant: .glb .gltf .obj .fbx .dae .ply")->required();
   bake_app->add_option("-o,--output", bake.output, "File to write: .glb or .gltf")->required();
   addLoadOptions(*bake_app, bake.load);
-  addBakeOptions(*bake_app, bake.bake);
+  addBakeOptions(*bake_app, bake.bake, "Density field");
   bake_app->add_option("--surface", bake.surface,
                        "Use this surface instead of the field's: .obj .ply .glb");
   bake_app->add_option("--population", bake.population,
@@ -145,12 +156,11 @@ int run(int argc, char** argv) {
   render_app->add_option("--shadow-map", render.shadow_map, "Side of the shadow map, pixels")
       ->capture_default_str();
   addDeviceOptions(*render_app, render.device);
-  addBakeOptions(*render_app, render.bake);
+  addBakeOptions(*render_app, render.bake, "Density field, for a plant that carries no bake");
   render_app->add_flag("--json", render.json, "Print times as JSON");
 
   FiguresCommand figures;
   CLI::App* figures_app = app.add_subcommand("figures", "Reproduce the figures of a paper");
-  figures_app->require_subcommand(1);
   CLI::App* luft_app = figures_app->add_subcommand("luft", "Luft, Balzer, Deussen 2007: 1 to 6");
   luft_app->add_option("-o,--output", figures.output, "Folder to write")->capture_default_str();
   luft_app->add_option("--species", figures.species, "Species of the main tree")
@@ -158,13 +168,23 @@ int run(int argc, char** argv) {
   luft_app->add_option("--size", figures.size, "WxH of each picture")->capture_default_str();
   addDeviceOptions(*luft_app, figures.device);
 
+  for (int i = 1; i < argc; ++i)
+    if (*argv[i] == '\0')
+      throw Error("argument " + std::to_string(i), "is empty", "give it a value or leave it out");
+  std::string help = "verdure --help";
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
-    std::fprintf(stderr, "verdure: %s; see verdure --help\n", e.what());
-    return 2;
+    for (const CLI::App* command : app.get_subcommands())
+      help = "verdure " + command->get_name() + " --help";
+    return fail(std::string(e.what()) + "; see " + help);
   }
+  if (app.get_subcommands().empty())
+    throw Error("command line", "no command is named",
+                "use grow, inspect, bake, render or figures; see " + help);
+  if (*figures_app && !*luft_app)
+    throw Error("figures", "no paper is named", "use luft; see verdure figures --help");
   setThreadCount(threads);
   if (*grow_app) runGrow(grow);
   if (*inspect_app) runInspect(inspect);
@@ -178,13 +198,15 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return run(argc, argv);
+    const int code = run(argc, argv);
+    if (std::fflush(stdout) != 0)
+      return fail("standard output: cannot be written; check its space");
+    return code;
   } catch (const verdure::Error& e) {
-    std::fprintf(stderr, "verdure: %s\n", e.what());
+    return fail(e.what());
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "verdure: out of memory; use a smaller plant, grid or picture\n");
+    return fail("out of memory; use a smaller plant, grid or picture");
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "verdure: unexpected: %s\n", e.what());
+    return fail(std::string("unexpected: ") + e.what());
   }
-  return 2;
 }

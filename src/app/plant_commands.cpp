@@ -1,9 +1,11 @@
 // grow, inspect and bake.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
@@ -60,55 +62,101 @@ void showProgress(DensityOptions& options, Progress& progress) {
   options.progress = [&progress](const char* step, double share) { progress.show(step, share); };
 }
 
-Placement readPlacement(const Json& entry, const std::string& where) {
-  const auto number = [&](const char* key, double fallback) {
-    if (!entry.contains(key)) return fallback;
-    if (!entry[key].is_number()) throw Error(where, fmt::format("\"{}\" is no number", key));
-    return entry[key].get<double>();
-  };
+/// A member of a layout: a finite number that a float can hold.
+float numberOf(const Json& value, const std::string& where, const std::string& key) {
+  const double number = value.is_number() ? value.get<double>() : NAN;
+  if (!(std::abs(number) <= double{std::numeric_limits<float>::max()}))
+    throw Error(where, fmt::format("\"{}\" is no usable number", key), "see docs/population.md");
+  return static_cast<float>(number);
+}
+
+Placement readPlacement(const Json& entry, std::size_t plants, const std::string& where) {
+  if (!entry.is_object()) throw Error(where, "is no object", "see docs/population.md");
   Placement place;
-  place.plant = static_cast<std::uint32_t>(number("plant", 0));
-  place.angle = static_cast<float>(number("angle_deg", 0) * M_PI / 180.0);
-  place.scale = static_cast<float>(number("scale", 1));
-  const Json position = entry.value("position", Json::array({0, 0, 0}));
-  if (!position.is_array() || position.size() != 3 || !position[0].is_number() ||
-      !position[1].is_number() || !position[2].is_number())
-    throw Error(where, "\"position\" must be three numbers");
-  for (int a = 0; a < 3; ++a) place.position[a] = position[static_cast<std::size_t>(a)];
+  for (const auto& [key, value] : entry.items()) {
+    if (key == "plant") {
+      if (!value.is_number_unsigned() || value.get<std::uint64_t>() >= plants)
+        throw Error(where, fmt::format("\"plant\" is {}", value.dump()),
+                    fmt::format("the plants are numbered 0 to {}", plants - 1));
+      place.plant = value.get<std::uint32_t>();
+    } else if (key == "position") {
+      if (!value.is_array() || value.size() != 3)
+        throw Error(where, "\"position\" is no list of three numbers", "write [x, y, z] in m");
+      for (int a = 0; a < 3; ++a)
+        place.position[a] = numberOf(value[static_cast<std::size_t>(a)], where, key);
+    } else if (key == "angle_deg") {
+      place.angle = numberOf(value, where, key) * static_cast<float>(M_PI / 180.0);
+    } else if (key == "scale") {
+      place.scale = numberOf(value, where, key);
+      if (!(place.scale > 0.0f)) throw Error(where, "\"scale\" is not above 0", "1 is usual");
+    } else {
+      throw Error(where, fmt::format("\"{}\" is unknown", key),
+                  "use plant, position, angle_deg and scale");
+    }
+  }
   return place;
 }
 
-void bakePopulation(const BakeCommand& command) {
+struct Population {
+  std::vector<Plant> plants;  ///< the command's own plant first
+  std::vector<Placement> placements;
+};
+
+Population readPopulation(const BakeCommand& command) {
   const auto bytes = readFile(command.population);
   const Json layout = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
-  if (layout.is_discarded() || !layout.is_object() || !layout.contains("placements") ||
-      !layout["placements"].is_array())
-    throw Error(command.population, "is no population layout",
-                "it needs an array \"placements\", see docs/population.md");
-  std::vector<Plant> plants;
-  plants.push_back(loadPlant(command.input, command.load));
-  for (const Json& file : layout.value("plants", Json::array()))
-    plants.push_back(loadPlant(fs::path(command.population).parent_path() / file.get<std::string>(),
-                               command.load));
-  std::vector<Placement> placements;
+  const auto refuse = [&](const char* what) {
+    throw Error(command.population, std::string("is no population layout: ") + what,
+                "see docs/population.md");
+  };
+  if (layout.is_discarded()) refuse("it is not JSON");
+  if (!layout.is_object() || !layout.contains("placements") || !layout["placements"].is_array() ||
+      layout["placements"].empty())
+    refuse("it needs a list \"placements\"");
+  for (const auto& [key, value] : layout.items()) {
+    if (key != "plants" && key != "placements") refuse("it may hold \"plants\" and \"placements\"");
+    if (key != "plants") continue;
+    if (!value.is_array()) refuse("\"plants\" is no list of files");
+    for (const Json& file : value)
+      if (!file.is_string()) refuse("\"plants\" is no list of files");
+  }
+  const Json files = layout.value("plants", Json::array());
+  Population population;
   for (std::size_t i = 0; i < layout["placements"].size(); ++i)
-    placements.push_back(readPlacement(layout["placements"][i],
-                                       fmt::format("{}: placement {}", command.population, i)));
+    population.placements.push_back(
+        readPlacement(layout["placements"][i], 1 + files.size(),
+                      fmt::format("{}: placement {}", command.population, i)));
+  population.plants.push_back(loadPlant(command.input, command.load));
+  for (const Json& file : files)
+    population.plants.push_back(loadPlant(
+        fs::path(command.population).parent_path() / file.get<std::string>(), command.load));
+  return population;
+}
+
+/// "grove.glb" to "grove-007.glb".
+fs::path placementFile(const fs::path& output, std::size_t placement) {
+  fs::path file = output;
+  return file.replace_filename(
+      fmt::format("{}-{:03}{}", output.stem().string(), placement, output.extension().string()));
+}
+
+void bakePopulation(const BakeCommand& command) {
+  if (!command.surface.empty())
+    throw Error("--surface", "cannot be used with --population", "leave one of them out");
+  DensityOptions options = command.bake.checked();
+  const auto [plants, placements] = readPopulation(command);
+  for (std::size_t i = 0; i < placements.size(); ++i)
+    checkWritable(placementFile(command.output, i));
   std::vector<const Plant*> pointers;
   for (const Plant& plant : plants) pointers.push_back(&plant);
-
-  DensityOptions options = command.bake.checked();
   const auto bakes = [&] {
     Progress progress("bake");
     showProgress(options, progress);
     return bakeDensityPopulation(pointers, placements, options);
   }();
-  const fs::path output(command.output);
   Json reports = Json::array();
   for (std::size_t i = 0; i < bakes.size(); ++i) {
-    fs::path file = output;
-    file.replace_filename(
-        fmt::format("{}-{:03}{}", output.stem().string(), i, output.extension().string()));
+    const fs::path file = placementFile(command.output, i);
     savePlant(plants[placements[i].plant], &bakes[i].light, file, {command.color1});
     reports.push_back(Json::parse(jsonOf(bakes[i].report)));
     reports.back()["file"] = file.filename().string();
@@ -118,9 +166,9 @@ void bakePopulation(const BakeCommand& command) {
     fmt::print("{}\n", reports.dump(2));
   else
     fmt::print(
-        "{} plants baked in one field, each with a mesh of its own: {}-000{} and on.\n"
+        "{} plants baked in one field, each with a mesh of its own: {} and on.\n"
         "They can no longer be instanced: every plant's light depends on its neighbours.\n",
-        bakes.size(), output.stem().string(), output.extension().string());
+        bakes.size(), placementFile(command.output, 0).string());
 }
 
 }  // namespace
@@ -140,7 +188,7 @@ void runGrow(GrowCommand command) {
       throw Error("--set", fmt::format("'{}' is no assignment", text), "write Param=value");
     command.grow.set.push_back({text.substr(0, at), text.substr(at + 1)});
   }
-  checkWritable(command.output);
+  checkOutput(command.output, {".glb", ".gltf"});
   Timer timer;
   const Plant plant = grow(command.grow);
   const double seconds = timer.lap();
@@ -215,14 +263,16 @@ DensityOptions BakeParameters::checked() const {
   else
     throw Error("--normals", fmt::format("'{}' is unknown", normals),
                 "use surface-point, surface-vertex, ellipsoid or keep");
-  if (!(max_memory_mib > 0.0)) throw Error("--max-memory", "must be above 0");
-  o.max_memory_bytes = static_cast<std::size_t>(max_memory_mib * 1048576.0);
+  if (!(max_memory_mib > 0.0)) throw Error("--max-memory", "must be above 0", "4096 is usual");
+  o.max_memory_bytes = static_cast<std::size_t>(std::min(max_memory_mib, 1e12) * 1048576.0);
   return o;
 }
 
 void runBake(const BakeCommand& command) {
-  checkWritable(command.output);
+  checkOutput(command.output, {".glb", ".gltf"});
   if (!command.report.empty()) checkWritable(command.report);
+  if (fs::path(command.report).lexically_normal() == fs::path(command.output).lexically_normal())
+    throw Error("--report", "names the output file", "choose another file");
   if (!command.population.empty()) return bakePopulation(command);
   DensityOptions options = command.bake.checked();
   const Plant plant = loadPlant(command.input, command.load);

@@ -1,8 +1,10 @@
 // render.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
@@ -40,6 +42,16 @@ Terms parseTerms(const RenderCommand& command) {
   return terms;
 }
 
+/// Plants stand on the zero of their own heights, where strands may hang below it; those that were
+/// modelled around or away from it stand on their lowest point.
+float groundHeight(const Plant& plant) {
+  constexpr float kMostBelow = 0.25f;  // share of the height
+  const Bounds box = bounds(plant);
+  const bool from_zero = plant.origin == glm::dvec3(0.0) && box.min.y <= 0.0f &&
+                         -box.min.y < kMostBelow * box.size().y;
+  return from_zero ? 0.0f : box.min.y;
+}
+
 Camera parseCamera(const RenderCommand& command, const Scene& scene, float aspect) {
   const float fov = radians(static_cast<float>(command.fov_deg));
   if (command.camera == "auto")
@@ -52,6 +64,14 @@ Camera parseCamera(const RenderCommand& command, const Scene& scene, float aspec
 
 }  // namespace
 
+void checkOutput(const std::string& path, const std::vector<std::string>& extensions) {
+  if (std::find(extensions.begin(), extensions.end(), std::filesystem::path(path).extension()) ==
+      extensions.end())
+    throw Error(path, "is not a kind of file that can be written",
+                fmt::format("use {}", fmt::join(extensions, " or ")));
+  checkWritable(path);
+}
+
 std::vector<float> parseNumbers(const std::string& option, const std::string& text,
                                 std::size_t count) {
   std::vector<float> numbers;
@@ -60,15 +80,16 @@ std::vector<float> parseNumbers(const std::string& option, const std::string& te
     float value = 0.0f;
     const auto [next, problem] = std::from_chars(at, end, value);
     if (problem != std::errc() || !std::isfinite(value) || (next != end && *next != ','))
-      throw Error(option, fmt::format("'{}' is not a list of numbers", text),
-                  "separate them by commas");
+      throw Error(option,
+                  fmt::format("'{}' is no {}", text, count == 1 ? "number" : "list of numbers"),
+                  count == 1 ? "write one like 2.5" : "separate them by commas");
     numbers.push_back(value);
     if (next == end) break;
     at = next + 1;
   }
   if (count != 0 && numbers.size() != count)
-    throw Error(option,
-                fmt::format("'{}' has {} numbers, {} are needed", text, numbers.size(), count));
+    throw Error(option, fmt::format("'{}' has {} numbers", text, numbers.size()),
+                fmt::format("write {}", count));
   return numbers;
 }
 
@@ -118,13 +139,17 @@ void runRender(const RenderCommand& command) {
     throw Error("--fov", "must lie between 0 and 170 degrees", "34 is usual");
   if (!command.background.empty()) {
     const auto rgb = parseNumbers("--background", command.background, 3);
+    for (const float c : rgb)
+      if (c < 0.0f || c > 1.0f)
+        throw Error("--background", fmt::format("{:g} is out of range", c),
+                    "write R,G,B in [0, 1]");
     view.background = glm::vec3(rgb[0], rgb[1], rgb[2]);
   }
   if (command.shadow_map < 16)
     throw Error("--shadow-map", "must be at least 16 pixels", "2048 is usual");
   view.shadow_map_size = command.shadow_map;
   const DensityOptions bake_options = command.bake.checked();
-  checkWritable(command.output);
+  checkOutput(command.output, {".png"});
 
   Progress progress("render");
   progress.show("device");

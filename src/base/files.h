@@ -11,12 +11,15 @@
 
 namespace verdure {
 
-/// Reads a whole file. Throws Error if it is missing, a folder, or cannot be read.
+/// Reads a whole file. Throws Error if it is missing, no regular file, or cannot be read.
 std::vector<std::uint8_t> readFile(const std::filesystem::path& path);
 
-/// Writes a file under a temporary name in the same folder, then renames it: whoever looks sees the
-/// old file, the new file or none, never half of one. Throws Error if the folder is missing or not
-/// writable.
+/// Writes a file beside its place, then moves it there: whoever looks sees the old file, the new
+/// file or none, never half of one. A process that is killed while it writes leaves nothing: the
+/// file gets a name when it is complete (O_TMPFILE, linkat), and only a kill between that call and
+/// the next leaves a complete `.name.NUMBER`. File systems without nameless files (NFS, FAT) hold
+/// `.name.XXXXXX` while it is written; a kill leaves that behind. Throws Error if the folder is
+/// missing or not writable, or if a folder, device or pipe is in the place.
 void writeFile(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 void writeFile(const std::filesystem::path& path, const std::string& text);
 

@@ -1,0 +1,174 @@
+// render and figures as their user meets them.
+#include "command_line.h"
+#include "verdure/image.h"
+
+namespace verdure::test {
+namespace {
+
+class CommandLineRender : public CommandLine {
+ protected:
+  /// A small picture of `plant`.
+  Image picture(const std::string& plant, const Words& options, Json* report = nullptr) const {
+    Words command = {"render", plant,          "-o",  path("out.png"), "--size",
+                     "96x72",  "--shadow-map", "256", "--json"};
+    command.insert(command.end(), options.begin(), options.end());
+    const std::string said = runWell(command);
+    if (said.empty()) return {};
+    const Json json = Json::parse(said);
+    EXPECT_EQ(json["width"], 96);
+    EXPECT_EQ(json["height"], 72);
+    if (report != nullptr) *report = json;
+    return readImage(path("out.png"));
+  }
+};
+
+/// Mean of all bytes of one channel.
+double mean(const Image& image, std::size_t channel) {
+  double sum = 0;
+  for (std::size_t i = channel; i < image.rgba.size(); i += 4) sum += image.rgba[i];
+  return sum * 4.0 / static_cast<double>(image.rgba.size());
+}
+
+double difference(const Image& a, const Image& b) {
+  EXPECT_EQ(a.rgba.size(), b.rgba.size());
+  double sum = 0;
+  for (std::size_t i = 0; i < std::min(a.rgba.size(), b.rgba.size()); ++i)
+    sum += std::abs(int{a.rgba[i]} - int{b.rgba[i]});
+  return sum / static_cast<double>(a.rgba.size());
+}
+
+TEST_F(CommandLineRender, BothLights) {
+  const std::string tree = smallTree("tree.glb", 3);
+  Json expressive_report, standard_report, baked_report;
+  const Image expressive = picture(tree, {"--grid", "40"}, &expressive_report);
+  const Image standard = picture(tree, {"--light", "standard"}, &standard_report);
+  const double of_lights = difference(expressive, standard);
+  EXPECT_GT(of_lights, 0.1);
+  EXPECT_GT(expressive_report["bake_seconds"], 0.0);
+  EXPECT_EQ(standard_report["bake_seconds"], 0.0);  // a light of leaf normals needs none
+  // What a file brought along is used: the same picture, but for the rounding of the file.
+  runWell({"bake", tree, "-o", path("baked.glb"), "--grid", "40"});
+  const Image baked = picture(path("baked.glb"), {}, &baked_report);
+  EXPECT_EQ(baked_report["bake_seconds"], 0.0);
+  EXPECT_LT(difference(expressive, baked), 0.1 * of_lights);
+  const std::string said = runWell({"render", tree, "-o", path("out.png"), "--size", "32x32"});
+  EXPECT_NE(said.find("out.png: 32x32, expressive light, on "), std::string::npos) << said;
+}
+
+TEST_F(CommandLineRender, OptionsOfTheView) {
+  const std::string tree = smallTree();
+  const Image plain = picture(tree, {});
+  EXPECT_EQ(difference(plain, picture(tree, {"--camera", "auto", "--sun", "130,45"})), 0.0);
+  EXPECT_EQ(difference(plain, picture(tree, {"--camera", "35,4"})), 0.0);  // what auto stands for
+  EXPECT_GT(difference(plain, picture(tree, {"--camera", "-60,30"})), 1.0);
+  EXPECT_GT(difference(plain, picture(tree, {"--sun", "-50,20"})), 0.1);
+  EXPECT_GT(difference(plain, picture(tree, {"--fov", "60", "--camera", "9,4,9,0,6,0"})), 1.0);
+  EXPECT_GT(difference(plain, picture(tree, {"--terms", "ambient"})), 1.0);
+  EXPECT_EQ(
+      difference(plain, picture(tree, {"--terms", "ambient,diffuse,specular,shadow,textures"})),
+      0.0);
+  // Without any ground the background alone is seen away from the plant.
+  const Image red = picture(tree, {"--no-ground", "--background", "1,0,0"});
+  for (const int x : {0, 95})
+    for (const int y : {0, 71}) {
+      EXPECT_EQ(red.at(x, y)[0], 255);
+      EXPECT_EQ(red.at(x, y)[1], 0);
+      EXPECT_EQ(red.at(x, y)[2], 0);
+    }
+  EXPECT_GT(mean(red, 0), 150.0);
+  // Looking away from the plant there is nothing but the background.
+  const Image empty =
+      picture(tree, {"--no-ground", "--background", "0,0,1", "--camera", "0,2,50,0,2,100"});
+  EXPECT_EQ(mean(empty, 0), 0.0);
+  EXPECT_EQ(mean(empty, 2), 255.0);
+}
+
+TEST_F(CommandLineRender, StandsOnZeroWhereAStrandHangsBelow) {
+  // Leaves from 0 to 4 m, and one 0.5 m below: seen from the height of -0.25 m, the camera is below
+  // the ground at 0, and above one at the lowest leaf.
+  std::vector<glm::vec3> corners;
+  for (int i = 0; i < 40; ++i)
+    corners.emplace_back(0.2f * static_cast<float>(i % 3), 0.1f * static_cast<float>(i), 0);
+  const Words view = {"--camera", "0,-0.25,30,0,-0.25,60", "--background", "1,0,0", "--light",
+                      "standard"};
+  writeFile(path("standing.glb"), LeafFile(corners).glb());
+  const Image standing = picture(path("standing.glb"), view);
+  corners.emplace_back(0.0f, -0.5f, 0.0f);
+  writeFile(path("hanging.glb"), LeafFile(corners).glb());
+  EXPECT_EQ(difference(standing, picture(path("hanging.glb"), view)), 0.0);
+  // Modelled around 0, it stands on its lowest leaf.
+  corners.emplace_back(0.0f, -3.0f, 0.0f);
+  writeFile(path("around.glb"), LeafFile(corners).glb());
+  EXPECT_GT(difference(standing, picture(path("around.glb"), view)), 5.0);
+}
+
+TEST_F(CommandLineRender, Refuses) {
+  const std::string tree = smallTree();
+  const auto refused = [&](const Words& options, const Words& said) {
+    Words command = {"render", tree, "-o", path("out.png")};
+    command.insert(command.end(), options.begin(), options.end());
+    expectRefused(command, said);
+  };
+  refused({"--light", "candle"}, {"\"candle\"", "standard, expressive"});
+  for (const char* terms : {"glow", "ambient,glow"})
+    refused({"--terms", terms}, {"--terms: 'glow'"});
+  refused({"--terms", "ambient,,shadow"}, {"--terms: ''"});
+  for (const char* size :
+       {"0x100", "10x", "x10", "-5x5", "10x10x10", "10", "9999999999x2", "1.5x2"})
+    refused({"--size", size}, {"--size: '", size, "write 960x720"});
+  refused({"--size", "99999999x2"}, {"width is 99999999", "choose another size"});
+  refused({"--shadow-map", "0"}, {"--shadow-map"});
+  refused({"--shadow-map", "99999999"}, {"99999999", "choose another size"});
+  refused({"--sun", "abc"}, {"--sun: 'abc' is no list of numbers; separate them by commas"});
+  refused({"--sun", "1"}, {"--sun: '1' has 1 numbers; write 2"});
+  refused({"--sun", "1,nan"}, {"--sun: "});
+  refused({"--camera", "1,2,3"}, {"--camera: needs 2 or 6 numbers"});
+  refused({"--camera", "1,2,3,1,2,3"}, {"same point"});
+  refused({"--fov", "0"}, {"--fov: "});
+  refused({"--fov", "nan"}, {"--fov: "});
+  refused({"--background", "1,0"}, {"--background: "});
+  refused({"--background", "2,0,0"}, {"--background: 2 is out of range"});
+  refused({"--rho", "0"}, {"rho must be above 0"});
+  refused({"--normals", "none"}, {"--normals: 'none' is unknown"});
+  refused({"--wood", "*"}, {"no foliage"});
+  refused({"--device", "Voodoo 2"}, {"no Vulkan device \"Voodoo 2\""});
+  refused({"--nonsense"}, {"--nonsense"});
+  expectRefused({"render", tree, "-o", path("out.jpg")}, {"out.jpg: ", "use .png"});
+  expectRefused({"render", tree, "-o", path("no/out.png")}, {"no/out.png: cannot be written"});
+  expectRefused({"render", path("none.glb"), "-o", path("out.png")}, {"none.glb: no such file"});
+  writeFile(path("picture.png"), encodePng(Image(4, 4)));
+  expectRefused({"render", path("picture.png"), "-o", path("out.png")}, {"picture.png: "});
+  expectRefused({"figures", "luft", "--size", "0x5", "-o", path("figures")}, {"--size"});
+  expectRefused({"figures", "luft", "--species", "triffid", "-o", path("figures")}, {"triffid"});
+  expectRefused({"figures", "luft", "-o", tree}, {"the folder cannot be made", "-o"});
+}
+
+TEST_F(CommandLineRender, SaysWhatToInstallWithoutVulkan) {
+  const std::string tree = smallTree();
+  const Words nothing = {"VK_ICD_FILENAMES=/nonexistent", "VK_DRIVER_FILES=/nonexistent"};
+  expectRefused({"render", tree, "-o", path("out.png")},
+                {"Vulkan", "install", "mesa-vulkan-drivers"}, nothing);
+  expectRefused({"figures", "luft", "-o", path("figures")}, {"Vulkan", "install"}, nothing);
+  EXPECT_EQ(run({"bake", tree, "-o", path("out.glb")}, nothing).code, 0);  // needs no device
+}
+
+TEST_F(CommandLineRender, ForeignPlants) {
+  const char* folder = std::getenv("VERDURE_PLANT_DIR");
+  if (folder == nullptr) GTEST_SKIP() << "VERDURE_PLANT_DIR is not set";
+  int plants = 0;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() != ".glb") continue;
+    SCOPED_TRACE(entry.path().string());
+    ++plants;
+    const Json found = Json::parse(runWell({"inspect", entry.path(), "--json"}));
+    EXPECT_GT(found["leaves"], 0);
+    runWell({"bake", entry.path(), "-o", path("baked.glb"), "--grid", "48"});
+    Json report;
+    picture(path("baked.glb"), {}, &report);
+    EXPECT_EQ(report["bake_seconds"], 0.0);
+  }
+  EXPECT_GT(plants, 0);
+}
+
+}  // namespace
+}  // namespace verdure::test

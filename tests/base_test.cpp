@@ -8,6 +8,7 @@
 #include "base/files.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "scratch.h"
 #include "shared/density.h"
 #include "verdure/image.h"
 
@@ -16,15 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path scratch(const char* name) {
-  const fs::path dir = fs::path(testing::TempDir()) / name;
-  fs::remove_all(dir);
-  fs::create_directories(dir);
-  return dir;
-}
-
 TEST(Files, WritesAndReadsBack) {
-  const fs::path dir = scratch("verdure_files");
+  const fs::path dir = scratchFolder("verdure_files");
   writeFile(dir / "a.txt", "first");
   writeFile(dir / "a.txt", "second");
   const auto bytes = readFile(dir / "a.txt");
@@ -34,7 +28,7 @@ TEST(Files, WritesAndReadsBack) {
 }
 
 TEST(Files, SayWhatIsWrong) {
-  const fs::path dir = scratch("verdure_files_bad");
+  const fs::path dir = scratchFolder("verdure_files_bad");
   try {
     readFile(dir / "none.glb");
     FAIL();

@@ -58,7 +58,7 @@ TEST_F(CommandLineRender, BothLights) {
 TEST_F(CommandLineRender, OptionsOfTheView) {
   const std::string tree = smallTree();
   const Image plain = picture(tree, {});
-  EXPECT_EQ(difference(plain, picture(tree, {"--camera", "auto", "--sun", "130,45"})), 0.0);
+  EXPECT_EQ(difference(plain, picture(tree, {"--camera", "auto", "--sun", "85,42"})), 0.0);
   EXPECT_EQ(difference(plain, picture(tree, {"--camera", "35,4"})), 0.0);  // what auto stands for
   EXPECT_GT(difference(plain, picture(tree, {"--camera", "-60,30"})), 1.0);
   EXPECT_GT(difference(plain, picture(tree, {"--sun", "-50,20"})), 0.1);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/files.h"
+#include "scratch.h"
 
 namespace verdure {
 
@@ -155,13 +156,6 @@ struct BoxFile : GltfBuilder {
   }
   Json& primitive() { return json["meshes"][0]["primitives"][0]; }
 };
-
-inline std::filesystem::path scratchFolder(const std::string& name) {
-  const auto dir = std::filesystem::path(testing::TempDir()) / ("verdure_" + name);
-  std::filesystem::remove_all(dir);
-  std::filesystem::create_directories(dir);
-  return dir;
-}
 
 /// Runs tests/npm/validate_gltf.mjs: 0 good, 1 issues, anything else: cannot run here.
 inline int runValidator(const std::vector<std::string>& arguments) {

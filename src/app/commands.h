@@ -60,6 +60,8 @@ struct RenderCommand {
   std::string output;
   LoadOptions load;
   BakeParameters bake;
+  bool bake_again =
+      false;  ///< parameters of the bake were given: the file's own light is not theirs
   std::string size = "960x720";
   std::string light = "expressive";
   std::string terms;
@@ -91,9 +93,6 @@ std::pair<int, int> parseSize(const std::string& text);
 /// Comma-separated numbers; throws Error unless there are `count` of them (0: any).
 std::vector<float> parseNumbers(const std::string& option, const std::string& text,
                                 std::size_t count);
-/// Where a plant stands: at y = 0 where its foot is there and only roots or hanging twigs reach
-/// below, else at its lowest point.
-float groundHeight(const Plant& plant);
 /// The light that a file brought along in `_AO` and NORMAL, if it has any.
 std::optional<CrownLight> lightOfFile(const Plant& plant);
 std::string jsonOf(const DensityReport& report);

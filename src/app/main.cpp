@@ -156,7 +156,8 @@ int run(int argc, char** argv) {
   render_app->add_option("--shadow-map", render.shadow_map, "Side of the shadow map, pixels")
       ->capture_default_str();
   addDeviceOptions(*render_app, render.device);
-  addBakeOptions(*render_app, render.bake, "Density field, for a plant that carries no bake");
+  constexpr const char* kBakeGroup = "Density field (given any, the file's own bake is left)";
+  addBakeOptions(*render_app, render.bake, kBakeGroup);
   render_app->add_flag("--json", render.json, "Print times as JSON");
 
   FiguresCommand figures;
@@ -185,6 +186,8 @@ int run(int argc, char** argv) {
                 "use grow, inspect, bake, render or figures; see " + help);
   if (*figures_app && !*luft_app)
     throw Error("figures", "no paper is named", "use luft; see verdure figures --help");
+  for (const CLI::Option* option : render_app->get_options())
+    if (option->get_group() == kBakeGroup && option->count() > 0) render.bake_again = true;
   setThreadCount(threads);
   if (*grow_app) runGrow(grow);
   if (*inspect_app) runInspect(inspect);

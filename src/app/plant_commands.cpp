@@ -45,7 +45,8 @@ void listParameters(const std::string& species, bool json) {
   if (json) fmt::print("{}\n", all.dump(2));
 }
 
-Surface loadSurface(const std::string& path) {
+/// In the plant's frame: both may lie far from the origin.
+Surface loadSurface(const std::string& path, const glm::dvec3& plant_origin) {
   const Plant mesh = loadPlant(path);
   Surface surface;
   for (const Mesh& part : mesh.meshes) {
@@ -54,6 +55,8 @@ Surface loadSurface(const std::string& path) {
     surface.normals.insert(surface.normals.end(), part.normals.begin(), part.normals.end());
     for (const std::uint32_t i : part.indices) surface.indices.push_back(first + i);
   }
+  const glm::vec3 offset(mesh.origin - plant_origin);
+  for (glm::vec3& p : surface.positions) p += offset;
   return surface;
 }
 
@@ -277,7 +280,7 @@ void runBake(const BakeCommand& command) {
   DensityOptions options = command.bake.checked();
   const Plant plant = loadPlant(command.input, command.load);
   std::optional<Surface> surface;
-  if (!command.surface.empty()) surface = loadSurface(command.surface);
+  if (!command.surface.empty()) surface = loadSurface(command.surface, plant.origin);
   const DensityBake bake = [&] {
     Progress progress("bake");
     showProgress(options, progress);

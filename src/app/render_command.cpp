@@ -10,6 +10,7 @@
 #include "app/commands.h"
 #include "base/files.h"
 #include "base/progress.h"
+#include "plant/normals.h"
 #include "verdure/error.h"
 
 namespace verdure::app {
@@ -108,12 +109,6 @@ std::pair<int, int> parseSize(const std::string& text) {
   return {width, height};
 }
 
-float groundHeight(const Plant& plant) {
-  const Bounds box = bounds(plant);
-  const bool near_foot = box.min.y < 0.0f && -box.min.y < 0.3f * box.size().y;
-  return near_foot ? 0.0f : box.min.y;
-}
-
 std::optional<CrownLight> lightOfFile(const Plant& plant) {
   CrownLight light;
   bool any = false;
@@ -155,9 +150,10 @@ void runRender(const RenderCommand& command) {
   progress.show("device");
   Renderer renderer(command.device);
   progress.show("loading");
-  const Plant plant = loadPlant(command.input, command.load);
+  Plant plant = loadPlant(command.input, command.load);
   // The file's own bake, or one made now; a light without baked terms needs neither.
-  std::optional<CrownLight> light = lightOfFile(plant);
+  std::optional<CrownLight> light;
+  if (!command.bake_again) light = lightOfFile(plant);
   const bool baked_terms = view.terms.normal == NormalSource::kCrown ||
                            view.terms.ambient_source == AmbientSource::kBaked;
   double bake_seconds = 0.0;
@@ -167,6 +163,11 @@ void runRender(const RenderCommand& command) {
     light = std::move(bake.light);
     bake_seconds = bake.report.seconds_total;
   }
+  // A baked file has no leaf normals any more: they are found again from its triangles.
+  if (view.terms.normal == NormalSource::kLeaf)
+    for (Mesh& mesh : plant.meshes)
+      if (mesh.kind == PartKind::kFoliage && !mesh.ambient.empty())
+        mesh.normals = angleWeightedNormals(mesh.positions, mesh.indices);
   Scene scene;
   scene.ground = !command.no_ground;
   scene.ground_height = groundHeight(plant);

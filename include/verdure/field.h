@@ -32,7 +32,6 @@ struct SurfaceStatistics {
   int coarse_step = 1;                      ///< its spacing in fine cells; 1 = it was not needed
   std::size_t degenerate_gradients = 0;     ///< vertices whose normal had to be taken elsewhere
   std::size_t bytes = 0;                    ///< held by lattices while it ran, at most
-  float largest_sum = 0.0f;                 ///< on the points evaluated
 };
 
 /// A triangle mesh of the surface where the kernel sum equals a threshold.

@@ -76,12 +76,6 @@ glm::vec3 BlockLattice::blockLow(const GeneratorGrid& grid, const glm::ivec3& bl
   return lattice_.origin - grid.origin() + lattice_.spacing * glm::vec3(block * kBlock);
 }
 
-float BlockLattice::largest() const {
-  float most = 0.0f;
-  for (const glm::vec2& range : ranges_) most = std::max(most, range.y);
-  return most;
-}
-
 float BlockLattice::valueOrZero(const glm::ivec3& point) const {
   const std::int32_t slot = slotOf(point / kBlock);
   if (slot == kAbsent) return 0.0f;

@@ -43,8 +43,6 @@ class BlockLattice {
   const glm::vec2& range(std::size_t slot) const { return ranges_[slot]; }
   /// Where a block's first point lies, relative to the generators' origin.
   glm::vec3 blockLow(const GeneratorGrid& grid, const glm::ivec3& block) const;
-  /// Largest value on the evaluated blocks, 0 without any.
-  float largest() const;
   float valueOrZero(const glm::ivec3& point) const;
   std::size_t bytes() const;
 

@@ -188,9 +188,28 @@ bool needsSurface(const DensityOptions& options) {
          options.normals == CrownNormals::kSurfacePoint;
 }
 
-/// A light without surface when tau exceeds everything: says so, with the largest sum that was
-/// seen.
-[[noreturn]] void failAboveMaximum(float tau, float largest) {
+/// The kernel sum at the top of the hill on which `start` stands, by ever finer searches around the
+/// best point so far.
+float hilltop(const DensityField& field, glm::vec3 start) {
+  float best = 0.0f;
+  for (float reach = 0.5f * field.maxRadius(); reach > 1e-3f * field.maxRadius(); reach *= 0.6f) {
+    std::vector<glm::vec3> points;
+    for (int i = 0; i < 343; ++i)
+      points.push_back(start +
+                       reach / 3.0f * (glm::vec3(i % 7, i / 7 % 7, i / 49) - glm::vec3(3.0f)));
+    const std::vector<float> sums = sumsAt(field, points);
+    const auto top = std::max_element(sums.begin(), sums.end());
+    best = std::max(best, *top);
+    start = points[static_cast<std::size_t>(top - sums.begin())];
+  }
+  return best;
+}
+
+/// There is no surface: says why, with the field's maximum. `densest` is the generator with the
+/// largest sum.
+[[noreturn]] void failWithoutSurface(const DensityField& field, const glm::vec3& densest,
+                                     float tau) {
+  const float largest = hilltop(field, densest);
   if (tau < largest)
     throw Error(kWhere, fmt::format("the grid is too coarse for the surface of tau {:g}", tau),
                 "choose a finer --grid");
@@ -208,16 +227,16 @@ CrownField makeCrownField(DensityField field, const std::vector<Generator>& gene
   Timer timer;
   const float rho = generators[0].radius;
   CrownField crown(std::move(field), rho, thresholds);
-  float largest = 0.0f;
-  for (const float sum : sumsAt(crown.field, positionsOf(generators)))
-    largest = std::max(largest, sum);
+  const std::vector<float> sums = sumsAt(crown.field, positionsOf(generators));
+  const auto largest = std::max_element(sums.begin(), sums.end());
+  const glm::vec3 densest = generators[static_cast<std::size_t>(largest - sums.begin())].position;
   report.rho = rho;
   report.tau = thresholds.tau;
   report.d_min = thresholds.d_min;
   report.k_min = options.k_min;
   report.exponent = options.exponent;
   report.generators = generators.size();
-  report.field_max_at_generators = largest;
+  report.field_max_at_generators = *largest;
   if (surface != nullptr) {
     crown.setSurface(preparedSurface(*surface));
     crown.own_surface = false;
@@ -230,12 +249,11 @@ CrownField makeCrownField(DensityField field, const std::vector<Generator>& gene
     SurfaceStatistics statistics;
     Surface extracted =
         crown.field.surface(lattice, thresholds.tau, options.max_memory_bytes, &statistics);
-    if (extracted.indices.empty())
-      failAboveMaximum(thresholds.tau, std::max(largest, statistics.largest_sum));
+    if (extracted.indices.empty()) failWithoutSurface(crown.field, densest, thresholds.tau);
     crown.setSurface(std::move(extracted));
     reportSurface(crown, statistics, lattice, report);
-  } else if (thresholds.tau >= largest) {
-    failAboveMaximum(thresholds.tau, largest);
+  } else if (thresholds.tau >= *largest && thresholds.tau >= hilltop(crown.field, densest)) {
+    failWithoutSurface(crown.field, densest, thresholds.tau);
   }
   report.seconds_surface = timer.lap();
   return crown;

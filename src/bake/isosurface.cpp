@@ -356,13 +356,11 @@ Surface DensityField::surface(const Lattice& lattice, float tau, std::size_t max
     markNearSurface(*state_, coarse, step, tau, fine);
     fine.assignSlots();
     stats.bytes = coarse.bytes();
-    stats.largest_sum = coarse.largest();
   }
   checkMemory(stats.bytes + fine.bytes(), max_bytes);
   fine.evaluate(*state_);
   stats.grid_points_evaluated = fine.slotCount() * kBlockPoints;
   stats.bytes += fine.bytes();
-  stats.largest_sum = std::max(stats.largest_sum, fine.largest());
   return Extractor(*state_, fine, tau).run(stats);
 }
 

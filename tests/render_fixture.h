@@ -7,9 +7,9 @@
 #include <cmath>
 #include <memory>
 
-#include "render/camera.h"
 #include "render/look.h"
 #include "render/scene.h"
+#include "scene/camera.h"
 #include "shared/color.h"
 #include "shared/illumination.h"
 #include "test_plants.h"

@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
-#include "render/ground_texture.h"
 #include "render/mipmaps.h"
 #include "render/shadow_pass.h"
 #include "render_fixture.h"
+#include "scene/ground_texture.h"
 #include "shared/density.h"
 #include "shared/sky.h"
 
@@ -166,7 +166,7 @@ TEST(AutomaticCamera, ShowsAllOfPlantsOfAnySize) {
         const float aspect = 1.5f;
         const Camera camera = automaticCamera(scene, azimuth, elevation, aspect);
         shared::FrameUniforms u{};
-        setCamera(u, camera, aspect);
+        u.clip_from_world = clipFromWorld(camera, aspect);
         float reach = 0.0f, low = 1e9f, high = -1e9f;
         for (const Mesh& mesh : tree.meshes)
           for (const glm::vec3& p : mesh.positions) {

@@ -4,8 +4,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "base/files.h"
-#include "render/camera.h"
 #include "render_fixture.h"
+#include "scene/camera.h"
 #include "verdure/compare.h"
 
 namespace verdure {

@@ -4,7 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <glm/glm.hpp>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace verdure {
@@ -27,6 +29,24 @@ struct Image {
                              4;
   }
   const std::uint8_t* at(int x, int y) const { return const_cast<Image*>(this)->at(x, y); }
+};
+
+/// Linear RGB in floats, rows from the top, not bound to 1.
+struct HdrImage {
+  int width = 0;
+  int height = 0;
+  std::vector<glm::vec3> rgb;  ///< width * height
+
+  HdrImage() = default;
+  HdrImage(int w, int h)
+      : width(w), height(h), rgb(static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
+
+  bool empty() const { return rgb.empty(); }
+  glm::vec3& at(int x, int y) {
+    return rgb[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+               static_cast<std::size_t>(x)];
+  }
+  const glm::vec3& at(int x, int y) const { return const_cast<HdrImage*>(this)->at(x, y); }
 };
 
 /// Decodes PNG or JPEG. Throws Error naming `where`.

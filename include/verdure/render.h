@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "verdure/plant.h"
+#include "verdure/image.h"
+#include "verdure/scene.h"
 
 /// Headless pictures of plants on Vulkan 1.3.
 namespace verdure {
@@ -38,30 +39,6 @@ struct Terms {
 Terms presetTerms(const std::string& name);
 const std::vector<std::string>& presetNames();
 
-struct Camera {
-  glm::vec3 eye{0.0f, 2.0f, 10.0f};
-  glm::vec3 target{0.0f, 2.0f, 0.0f};
-  float vertical_fov = 0.6f;  ///< radians
-};
-
-/// A plant drawn at one or more places. `light` may be null: then normals are the mesh's own, as
-/// with NormalSource::kLeaf, and the ambient coefficient is 1. Foliage is drawn from both sides
-/// whatever its material says; alpha that is masked or blended is cut.
-struct SceneItem {
-  const Plant* plant = nullptr;
-  const CrownLight* light = nullptr;
-  std::vector<glm::mat4> world_from_plant{glm::mat4(1.0f)};
-};
-
-/// Coordinates are relative to the origin of the first item's plant; a plant with another origin
-/// stands where the difference of both puts it. Scenes hundreds of kilometres from the coordinates'
-/// origin therefore look the same as at it.
-struct Scene {
-  std::vector<SceneItem> items;
-  bool ground = true;  ///< textured ground plane at y = ground_height
-  float ground_height = 0.0f;
-};
-
 /// One picture. Colours of lights are linear and not bound to 1; what exceeds 1 in the picture is
 /// cut. The defaults are a clear summer day.
 struct View {
@@ -76,12 +53,6 @@ struct View {
   int shadow_map_size = 2048;
   std::optional<glm::vec3> background;  ///< linear RGB instead of the gradient sky
 };
-
-/// A camera that shows the whole scene from `azimuth` (as the sun's) and `elevation` (radians),
-/// with a small margin, for an image of `aspect` = width / height. At elevation 0 the eye is about
-/// as high as a person's: 1.7 m, but at most a third of the scene's height and at least an eighth.
-Camera automaticCamera(const Scene& scene, float azimuth, float elevation, float aspect,
-                       float vertical_fov = 0.6f);
 
 struct FrameTimes {
   double pack_ms = 0;    ///< packing and upload, CPU

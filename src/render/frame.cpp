@@ -4,9 +4,9 @@
 #include <array>
 #include <cstring>
 
-#include "render/camera.h"
-#include "render/ground_texture.h"
 #include "render/look.h"
+#include "scene/camera.h"
+#include "scene/ground_texture.h"
 #include "verdure/error.h"
 
 namespace verdure {
@@ -173,7 +173,13 @@ void FrameDrawer::writeFrameSet() {
 
 shared::FrameUniforms FrameDrawer::makeUniforms(const GpuScene& scene, const View& view) const {
   shared::FrameUniforms u{};
-  setCamera(u, view.camera, static_cast<float>(view.width) / static_cast<float>(view.height));
+  const float aspect = static_cast<float>(view.width) / static_cast<float>(view.height);
+  const CameraRays rays = cameraRays(view.camera, aspect);
+  u.clip_from_world = clipFromWorld(view.camera, aspect);
+  u.eye = glm::vec4(rays.eye, 0.0f);
+  u.ray_right = glm::vec4(rays.right, 0.0f);
+  u.ray_down = glm::vec4(rays.down, 0.0f);
+  u.ray_forward = glm::vec4(rays.forward, 0.0f);
   const glm::vec3 to_sun = directionOf(view.sun_azimuth, view.sun_elevation);
   const ShadowFit fit = fitShadow(scene.bounds(), to_sun, view.shadow_map_size);
   u.shadow_from_world = fit.shadow_from_world;

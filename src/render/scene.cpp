@@ -7,18 +7,12 @@
 
 #include "base/parallel.h"
 #include "render/look.h"
+#include "scene/scene.h"
 #include "shared/density.h"
 #include "verdure/error.h"
 
 namespace verdure {
 namespace {
-
-/// Opacity below which a texel is cut, in the texture's own alpha.
-float textureCutoff(const Material& material) {
-  const float cutoff =
-      material.alpha_mode == AlphaMode::kMask ? material.alpha_cutoff : 0.5f;  // blended: as cut
-  return std::clamp(cutoff / std::max(material.base_color.a, 1e-3f), 1.0f / 255.0f, 1.0f);
-}
 
 class Packer {
  public:
@@ -167,13 +161,6 @@ class Packer {
                                       draw.foliage ? look::kLeafExponent : look::kWoodExponent);
   }
 
-  static const Texture& textureOf(const Plant& plant, int index) {
-    if (static_cast<std::size_t>(index) >= plant.textures.size() ||
-        plant.textures[static_cast<std::size_t>(index)].image.empty())
-      throw Error(plant.name, "a material's texture " + std::to_string(index) + " is missing");
-    return plant.textures[static_cast<std::size_t>(index)];
-  }
-
   std::uint32_t addTexture(const TextureJob& job) {
     const auto [entry, is_new] =
         known_textures_.try_emplace(job, static_cast<std::uint32_t>(out_.textures.size()));
@@ -210,13 +197,6 @@ PackedNormal packNormal(const glm::vec3& unit_normal, float ambient) {
     return static_cast<std::int16_t>(std::lround(std::clamp(value, -1.0f, 1.0f) * 32767.0f));
   };
   return {component(n.x), component(n.y), component(n.z), 0};
-}
-
-glm::mat4 worldFromPlant(const Scene& scene, const SceneItem& item, const glm::mat4& instance) {
-  const glm::vec3 offset(item.plant->origin - scene.items.front().plant->origin);
-  glm::mat4 moved = instance;
-  moved[3] += glm::vec4(offset, 0.0f);
-  return moved;
 }
 
 PackedScene packScene(const Scene& scene) {

@@ -72,9 +72,6 @@ struct PackedScene {
 /// Throws Error for a null plant, arrays of different lengths, indices out of range.
 PackedScene packScene(const Scene& scene);
 
-/// world_from_plant of an instance with the item's own origin taken into account.
-glm::mat4 worldFromPlant(const Scene& scene, const SceneItem& item, const glm::mat4& instance);
-
 /// A packed scene on the GPU, with a descriptor set for each material (set 1: base colour, normal
 /// map).
 class GpuScene {

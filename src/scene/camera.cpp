@@ -1,4 +1,4 @@
-#include "render/camera.h"
+#include "scene/camera.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,19 +7,11 @@
 #include <map>
 
 #include "base/parallel.h"
-#include "render/scene.h"
+#include "scene/scene.h"
 #include "verdure/error.h"
 
 namespace verdure {
 namespace {
-
-/// Right, up and backward axes of a camera.
-glm::mat3 cameraAxes(const Camera& camera) {
-  const glm::vec3 back = glm::normalize(camera.eye - camera.target);
-  const glm::vec3 up = std::abs(back.y) > 0.9999f ? glm::vec3(0, 0, -1) : glm::vec3(0, 1, 0);
-  const glm::vec3 right = glm::normalize(glm::cross(up, back));
-  return {right, glm::cross(back, right), back};
-}
 
 /// The vertices of a plant that lie farthest in each of many directions: what a camera must show so
 /// that it shows all (to about 1 % of the size).
@@ -89,27 +81,44 @@ glm::vec3 directionOf(float azimuth, float elevation) {
           std::cos(azimuth) * std::cos(elevation)};
 }
 
-void setCamera(shared::FrameUniforms& uniforms, const Camera& camera, float aspect) {
+glm::mat3 cameraAxes(const Camera& camera) {
+  const glm::vec3 back = glm::normalize(camera.eye - camera.target);
+  const glm::vec3 up = std::abs(back.y) > 0.9999f ? glm::vec3(0, 0, -1) : glm::vec3(0, 1, 0);
+  const glm::vec3 right = glm::normalize(glm::cross(up, back));
+  return {right, glm::cross(back, right), back};
+}
+
+namespace {
+
+void checkCamera(const Camera& camera) {
   const float distance = glm::length(camera.eye - camera.target);
   if (!(distance > 0.0f) || !std::isfinite(distance))
     throw Error("camera", "eye and target are the same point or not finite", "move one of them");
   if (!(camera.vertical_fov > 0.0f && camera.vertical_fov < glm::pi<float>()))
     throw Error("camera", "the field of view is not between 0 and pi radians");
+}
+
+}  // namespace
+
+CameraRays cameraRays(const Camera& camera, float aspect) {
+  checkCamera(camera);
   const glm::mat3 axes = cameraAxes(camera);
   const float tan_half = std::tan(0.5f * camera.vertical_fov);
-  const float near = 0.002f * distance;
+  return {camera.eye, axes[0] * tan_half * aspect, -axes[1] * tan_half, -axes[2]};
+}
+
+glm::mat4 clipFromWorld(const Camera& camera, float aspect) {
+  checkCamera(camera);
+  const glm::mat3 axes = cameraAxes(camera);
+  const float tan_half = std::tan(0.5f * camera.vertical_fov);
   glm::mat4 view(glm::transpose(axes));
   view[3] = glm::vec4(-(camera.eye * axes), 1.0f);
   glm::mat4 projection(0.0f);
   projection[0][0] = 1.0f / (tan_half * aspect);
   projection[1][1] = -1.0f / tan_half;  // Vulkan's y points down
   projection[2][3] = -1.0f;
-  projection[3][2] = near;
-  uniforms.clip_from_world = projection * view;
-  uniforms.eye = glm::vec4(camera.eye, 0.0f);
-  uniforms.ray_right = glm::vec4(axes[0] * tan_half * aspect, 0.0f);
-  uniforms.ray_down = glm::vec4(-axes[1] * tan_half, 0.0f);
-  uniforms.ray_forward = glm::vec4(-axes[2], 0.0f);
+  projection[3][2] = 0.002f * glm::length(camera.eye - camera.target);  // the near plane
+  return projection * view;
 }
 
 Camera automaticCamera(const Scene& scene, float azimuth, float elevation, float aspect,

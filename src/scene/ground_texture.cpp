@@ -1,4 +1,4 @@
-#include "render/ground_texture.h"
+#include "scene/ground_texture.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-#ifndef VERDURE_RENDER_GROUND_TEXTURE_H_
-#define VERDURE_RENDER_GROUND_TEXTURE_H_
+#ifndef VERDURE_SCENE_GROUND_TEXTURE_H_
+#define VERDURE_SCENE_GROUND_TEXTURE_H_
 
 #include "verdure/image.h"
 
@@ -15,4 +15,4 @@ Image makeGroundNoise(int size);
 
 }  // namespace verdure
 
-#endif  // VERDURE_RENDER_GROUND_TEXTURE_H_
+#endif  // VERDURE_SCENE_GROUND_TEXTURE_H_

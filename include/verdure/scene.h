@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "verdure/plant.h"
+#include "verdure/transfer.h"
 
 /// What is looked at, and from where: the same for the renderer and for the reference.
 namespace verdure {
@@ -22,6 +23,7 @@ struct SceneItem {
   const Plant* plant = nullptr;
   const CrownLight* light = nullptr;
   std::vector<glm::mat4> world_from_plant{glm::mat4(1.0f)};
+  const PlantTransfer* transfer = nullptr;  ///< may be null; of plants that stand unturned
 };
 
 /// Coordinates are relative to the origin of the first item's plant; a plant with another origin

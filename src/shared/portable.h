@@ -24,6 +24,7 @@ using glm::abs;
 using glm::acos;
 using glm::asin;
 using glm::clamp;
+using glm::cos;
 using glm::cross;
 using glm::dot;
 using glm::exp;

@@ -23,6 +23,8 @@ class Sky {
   /// The closed form that shaders evaluate, where the model has one; null else, and the renderer
   /// draws the dome from an image made of luminance().
   virtual const shared::SkyFormula* formula() const { return nullptr; }
+  /// How finely it must be sampled from the zenith to the horizon to see all of it.
+  virtual int rows() const { return 128; }
 };
 
 /// The sun as a disk of even luminance.
@@ -42,6 +44,13 @@ struct Daylight {
   std::shared_ptr<const Sky> sky;  ///< null = black
   Sun sun;
 };
+
+/// The sky of Preetham, Shirley, Smits, "A Practical Analytic Model for Daylight", SIGGRAPH 1999,
+/// and the sun through the same air. Turbidity 2 to 10; for lighting 2.5 (very clear) to 6 (haze):
+/// below 2.5 the horizon is far too bright (Zotti et al. 2007). `to_sun` need not be unit. A sun
+/// below the horizon leaves twilight that fades to night. Throws Error for a turbidity out of range
+/// or a direction that is none.
+Daylight preethamDaylight(float turbidity, const glm::vec3& to_sun);
 
 /// The same luminance in every direction above the horizon. `below`: in those below it, for tests
 /// (a white furnace) and light boxes.

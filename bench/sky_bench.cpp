@@ -21,7 +21,7 @@ void reconstruct(benchmark::State& state) {
   const SkyFit fit(preethamModel(), options);
   float t = 0.0f;
   for (auto _ : state) {
-    t = t > 1.0f ? 0.0f : t + 1e-3f;
+    t = t > 0.99f ? 0.0f : t + 1e-3f;
     benchmark::DoNotOptimize(fit.at(sunAt(1.5f * t, 6.0f * t), 2.5f + 3.5f * t));
   }
   state.counters["bytes"] = static_cast<double>(fit.coefficients().size_bytes());
@@ -32,7 +32,7 @@ void project(benchmark::State& state) {
   float t = 0.0f;
   setThreadCount(1);
   for (auto _ : state) {
-    t = t > 1.0f ? 0.0f : t + 1e-3f;
+    t = t > 0.99f ? 0.0f : t + 1e-3f;
     const Daylight light = preethamDaylight(2.5f + 3.5f * t, sunAt(1.5f * t, 6.0f * t));
     benchmark::DoNotOptimize(projectSky(*light.sky, static_cast<int>(state.range(0))));
   }

@@ -58,6 +58,7 @@ class SkyFit {
  private:
   SkyFitOptions options_;
   std::size_t stride_ = 0;
+  double air_scale_ = 0.0, air_offset_ = 0.0;
   std::vector<float> coefficients_;
 };
 

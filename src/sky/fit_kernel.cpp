@@ -15,28 +15,36 @@ using Tag = hn::CappedTag<float, kFitLanes>;
 using V = hn::Vec<Tag>;
 constexpr std::size_t kLanes = hn::MaxLanes(Tag());
 
-/// Four vectors of outputs: their sums stay in registers.
-template <bool kFour>
+/// kVectors vectors of outputs: their sums stay in registers. Each row has sums of its own, so that
+/// the processor need not wait for those of the row before.
+template <std::size_t kVectors>
 void sumBlock(const float* x, std::size_t rows, const float* y, std::size_t columns,
               const float* coefficients, std::size_t stride, float* out) {
   const Tag d;
   V s0 = hn::Zero(d), s1 = s0, s2 = s0, s3 = s0;
   for (std::size_t i = rows; i-- > 0;) {
-    const V x_i = hn::Set(d, x[i]);
-    const float* p = coefficients + (i * columns + columns) * stride;
+    V r0 = hn::Zero(d), r1 = r0, r2 = r0, r3 = r0;
+    const float* p = coefficients + (i + 1) * columns * stride;
     for (std::size_t j = columns; j-- > 0;) {
       p -= stride;
-      const V w = hn::Mul(x_i, hn::Set(d, y[j]));
-      s0 = hn::MulAdd(w, hn::LoadU(d, p), s0);
-      if (kFour) {
-        s1 = hn::MulAdd(w, hn::LoadU(d, p + kLanes), s1);
-        s2 = hn::MulAdd(w, hn::LoadU(d, p + 2 * kLanes), s2);
-        s3 = hn::MulAdd(w, hn::LoadU(d, p + 3 * kLanes), s3);
+      const V w = hn::Set(d, y[j]);
+      r0 = hn::MulAdd(w, hn::LoadU(d, p), r0);
+      if (kVectors == 4) {
+        r1 = hn::MulAdd(w, hn::LoadU(d, p + kLanes), r1);
+        r2 = hn::MulAdd(w, hn::LoadU(d, p + 2 * kLanes), r2);
+        r3 = hn::MulAdd(w, hn::LoadU(d, p + 3 * kLanes), r3);
       }
+    }
+    const V x_i = hn::Set(d, x[i]);
+    s0 = hn::MulAdd(x_i, r0, s0);
+    if (kVectors == 4) {
+      s1 = hn::MulAdd(x_i, r1, s1);
+      s2 = hn::MulAdd(x_i, r2, s2);
+      s3 = hn::MulAdd(x_i, r3, s3);
     }
   }
   hn::StoreU(s0, d, out);
-  if (kFour) {
+  if (kVectors == 4) {
     hn::StoreU(s1, d, out + kLanes);
     hn::StoreU(s2, d, out + 2 * kLanes);
     hn::StoreU(s3, d, out + 3 * kLanes);
@@ -47,9 +55,9 @@ void SumPolynomials(const float* x, std::size_t rows, const float* y, std::size_
                     const float* coefficients, std::size_t stride, float* out) {
   std::size_t k = 0;
   for (; k + 4 * kLanes <= stride; k += 4 * kLanes)
-    sumBlock<true>(x, rows, y, columns, coefficients + k, stride, out + k);
+    sumBlock<4>(x, rows, y, columns, coefficients + k, stride, out + k);
   for (; k < stride; k += kLanes)
-    sumBlock<false>(x, rows, y, columns, coefficients + k, stride, out + k);
+    sumBlock<1>(x, rows, y, columns, coefficients + k, stride, out + k);
 }
 
 }  // namespace HWY_NAMESPACE

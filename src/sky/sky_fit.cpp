@@ -86,18 +86,18 @@ void checkOptions(const SkyFitOptions& o) {
 
 /// The sun's angle as the polynomials see it, in [-1, 1]: a little stretched towards the zenith,
 /// because the model's luminance has a pole 15 degrees beyond it. (By trial.)
-double sunCoordinate(double zenith) {
-  const double x = zenith * (4.0 / kPi) - 1.0;
-  return x + kSunStretch * (1.0 - x * x);
+template <class T>
+T sunCoordinate(T zenith) {
+  const T x = zenith * static_cast<T>(4.0 / kPi) - T(1);
+  return x + static_cast<T>(kSunStretch) * (T(1) - x * x);
 }
 
-/// Turbidity as the polynomials see it, in [-1, 1]. The models' zenith has a pole near turbidity
-/// 1.66, outside of the range but near enough to spoil a polynomial of turbidity itself; of the
-/// logarithm of the distance from there everything is smooth.
-double airCoordinate(const SkyFitOptions& o, double turbidity) {
-  const double low = std::log(double{o.turbidity_min} - kTurbidityPole);
-  const double high = std::log(double{o.turbidity_max} - kTurbidityPole);
-  return (2.0 * std::log(turbidity - kTurbidityPole) - low - high) / (high - low);
+/// Turbidity as the polynomials see it, before the range is mapped to [-1, 1]. The model's zenith
+/// has a pole near turbidity 1.66, outside of the range but near enough to spoil a polynomial of
+/// turbidity itself; of the logarithm of the distance from there everything is smooth.
+template <class T>
+T airLogarithm(T turbidity) {
+  return std::log(turbidity - static_cast<T>(kTurbidityPole));
 }
 
 /// The point k of an even grid over a range.
@@ -126,9 +126,11 @@ SkyFit::SkyFit(const SkyModel& model, const SkyFitOptions& options) : options_(o
     sun_coordinates.push_back(sunCoordinate(zeniths.back()));
   }
   const double low = double{options.turbidity_min}, high = double{options.turbidity_max};
+  air_scale_ = 2.0 / (airLogarithm(high) - airLogarithm(low));
+  air_offset_ = -1.0 - air_scale_ * airLogarithm(low);
   for (std::size_t k = 0; k < airs; ++k) {
     turbidities.push_back(0.5 * (low + high) + 0.5 * (high - low) * samplePoint(k, airs));
-    air_coordinates.push_back(airCoordinate(options, turbidities.back()));
+    air_coordinates.push_back(air_scale_ * airLogarithm(turbidities.back()) + air_offset_);
   }
   const SkyProjection projection(options.bands, kRows);
   using Sample = std::array<double, kMostOutputs>;
@@ -167,10 +169,11 @@ Harmonics SkyFit::atZenithAngle(float sun_zenith, float turbidity) const {
                             options_.turbidity_min, options_.turbidity_max),
                 "fit a wider range");
   std::array<float, kMostDegree + 1> x, y;
-  chebyshev(static_cast<float>(sunCoordinate(std::clamp(double{sun_zenith}, 0.0, 0.5 * kPi))),
+  chebyshev(sunCoordinate(std::clamp(sun_zenith, 0.0f, static_cast<float>(0.5 * kPi))),
             options_.sun_degree, x.data());
-  chebyshev(static_cast<float>(airCoordinate(options_, double{turbidity})),
-            options_.turbidity_degree, y.data());
+  chebyshev(
+      static_cast<float>(air_scale_) * airLogarithm(turbidity) + static_cast<float>(air_offset_),
+      options_.turbidity_degree, y.data());
   std::array<float, kMostStride> out;
   sumPolynomials(x.data(), static_cast<std::size_t>(options_.sun_degree + 1), y.data(),
                  static_cast<std::size_t>(options_.turbidity_degree + 1), coefficients_.data(),

@@ -3,6 +3,9 @@
 
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
+
+#include "verdure/image.h"
 
 /// The light of the sky and of the sun. Luminances are kcd/m^2, illuminances klx, both as linear
 /// sRGB whose weighted sum (0.2126, 0.7152, 0.0722) is the photometric value. +Y is the zenith; the
@@ -51,6 +54,24 @@ struct Daylight {
 /// below the horizon leaves twilight that fades to night. Throws Error for a turbidity out of range
 /// or a direction that is none.
 Daylight preethamDaylight(float turbidity, const glm::vec3& to_sun);
+
+/// CIE standard general sky, type 1 (overcast) to 15 (white-blue and turbid): ISO 15469 / CIE S
+/// 011, in the white of D65. `illuminance`: klx of the sky on level ground, which sets its
+/// luminance; cieIlluminance() where it is not known. Its formula is known to the shaders. Throws
+/// Error for another type, a direction or an illuminance that is none.
+std::shared_ptr<const Sky> cieSky(int type, const glm::vec3& to_sun,
+                                  std::optional<float> illuminance = {});
+
+/// klx of the sky alone on level ground when the sun stands at an elevation (radians): the usual
+/// formulas of the Illuminating Engineering Society of North America (RP-21, 1984) for cloudy
+/// (types 1 to 5), partly cloudy (6 to 10) and clear skies.
+float cieIlluminance(int type, float sun_elevation);
+
+/// A panorama by latitude and longitude (zenith at the top, north (-Z) in the middle, east (+X) at
+/// right) as a sky, bilinear; its lower half is not used. `turn`: radians about the zenith, from
+/// south towards east. `scale`: kcd/m^2 of the value 1. Negative values are black. Throws Error
+/// unless it is twice as wide as high and finite.
+std::shared_ptr<const Sky> imageSky(HdrImage image, float turn = 0.0f, float scale = 1.0f);
 
 /// The same luminance in every direction above the horizon. `below`: in those below it, for tests
 /// (a white furnace) and light boxes.

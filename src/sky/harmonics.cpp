@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "shared/sh.h"
 #include "sky/harmonic_basis.h"
-#include "sky/quadrature.h"
+#include "sky/projection.h"
 #include "verdure/error.h"
 
 namespace verdure {
@@ -73,32 +73,13 @@ glm::vec3 valueAt(const Harmonics& function, const glm::vec3& direction) {
 
 Harmonics projectSky(const Sky& sky, int bands) {
   Harmonics h = withBands(bands);
-  const int rows = sky.rows();
-  const int columns = 2 * rows;
-  const std::vector<QuadratureNode> nodes = gaussLegendre(rows);
-  using Sums = std::array<glm::dvec3, kMaxBands * kMaxBands>;
-  std::vector<Sums> row_sums(static_cast<std::size_t>(rows));
-  parallelFor(row_sums.size(), 4, [&](std::size_t row) {
-    std::array<double, kMaxBands * kMaxBands> values{};
-    Sums& sums = row_sums[row];
-    sums.fill(glm::dvec3(0.0));
-    for (const double side : {1.0, -1.0}) {
-      const double up = side * nodes[row].x, across = std::sqrt(1.0 - up * up);
-      const double weight = nodes[row].weight * 2.0 * kPi / columns;
-      for (int column = 0; column < columns; ++column) {
-        const double azimuth = 2.0 * kPi * (column + 0.5) / columns;
-        const glm::dvec3 d(across * std::cos(azimuth), across * std::sin(azimuth), up);
-        const glm::dvec3 luminance(sky.luminance(shared::worldFromSh(glm::vec3(d))));
-        if (luminance == glm::dvec3(0.0)) continue;
-        harmonicsOf(d.x, d.y, d.z, bands, values.data());
-        for (std::size_t i = 0; i < static_cast<std::size_t>(h.count()); ++i)
-          sums[i] += luminance * (weight * values[i]);
-      }
-    }
-  });
+  const SkyProjection projection(bands, sky.rows());
+  std::vector<HarmonicSums> row_sums(projection.rows());
+  parallelFor(row_sums.size(), 8,
+              [&](std::size_t row) { projection.addRow(sky, row, row_sums[row]); });
   for (std::size_t i = 0; i < static_cast<std::size_t>(h.count()); ++i) {
     glm::dvec3 sum(0.0);
-    for (const Sums& sums : row_sums) sum += sums[i];
+    for (const HarmonicSums& sums : row_sums) sum += sums[i];
     h.weights[i] = glm::vec3(sum);
   }
   return h;

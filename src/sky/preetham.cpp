@@ -47,7 +47,7 @@ shared::SkyFormula preethamFormula(float turbidity, const glm::vec3& to_sun) {
   const glm::dvec3 c(-0.0227 * t + 5.3251, -0.0004 * t + 0.2125, -0.0079 * t + 0.2102);
   const glm::dvec3 d(0.1206 * t - 2.5771, -0.0641 * t - 0.8989, -0.0441 * t - 1.6537);
   const glm::dvec3 e(-0.0670 * t + 0.3703, -0.0033 * t + 0.0452, -0.0109 * t + 0.0529);
-  const double theta = std::acos(std::clamp(double{sun.y}, 0.0, 1.0));
+  const double theta = std::atan2(std::hypot(double{sun.x}, double{sun.z}), double{sun.y});
   const double cos_theta = std::cos(theta);
   const glm::dvec3 at_zenith =
       (1.0 + a * glm::exp(b)) * (1.0 + c * glm::exp(d * theta) + e * (cos_theta * cos_theta));

@@ -76,6 +76,18 @@ struct RenderCommand {
 };
 void runRender(const RenderCommand& command);
 
+struct CompareCommand {
+  std::string reference, test;
+  std::string metric = "flip,psnr,ssim";
+  std::string heatmap;
+  float pixels_per_degree = 67.0f;
+  std::optional<float> peak;        ///< of PSNR, HDR images
+  std::optional<double> threshold;  ///< of the first metric
+  bool json = false;
+};
+/// Returns the exit code: 1 if the first metric is worse than the threshold.
+int runCompare(const CompareCommand& command);
+
 struct FiguresCommand {
   std::string output = "figures";
   std::string species = "black-oak";

@@ -160,6 +160,24 @@ int run(int argc, char** argv) {
   addBakeOptions(*render_app, render.bake, kBakeGroup);
   render_app->add_flag("--json", render.json, "Print times as JSON");
 
+  CompareCommand compare;
+  CLI::App* compare_app = app.add_subcommand("compare", "Say how different two images are");
+  compare_app->add_option("reference", compare.reference, "Image: .png .jpg .exr .hdr")->required();
+  compare_app->add_option("test", compare.test, "Image of the same size")->required();
+  compare_app->add_option("--metric", compare.metric, "Of flip, psnr, ssim, by commas")
+      ->capture_default_str();
+  compare_app->add_option("--heatmap", compare.heatmap, "PNG of FLIP's map to write");
+  compare_app->add_option(
+      "--threshold", compare.threshold,
+      "Exit with 1 if the first metric is worse: flip above it, others below it");
+  compare_app
+      ->add_option("--pixels-per-degree", compare.pixels_per_degree,
+                   "FLIP: of the display as it is seen")
+      ->capture_default_str();
+  compare_app->add_option("--peak", compare.peak,
+                          "PSNR of HDR images: the peak (default: the reference's largest value)");
+  compare_app->add_flag("--json", compare.json, "Print JSON");
+
   FiguresCommand figures;
   CLI::App* figures_app = app.add_subcommand("figures", "Reproduce the figures of a paper");
   CLI::App* luft_app = figures_app->add_subcommand("luft", "Luft, Balzer, Deussen 2007: 1 to 6");
@@ -183,7 +201,7 @@ int run(int argc, char** argv) {
   }
   if (app.get_subcommands().empty())
     throw Error("command line", "no command is named",
-                "use grow, inspect, bake, render or figures; see " + help);
+                "use grow, inspect, bake, render, compare or figures; see " + help);
   if (*figures_app && !*luft_app)
     throw Error("figures", "no paper is named", "use luft; see verdure figures --help");
   for (const CLI::Option* option : render_app->get_options())
@@ -193,6 +211,7 @@ int run(int argc, char** argv) {
   if (*inspect_app) runInspect(inspect);
   if (*bake_app) runBake(bake);
   if (*render_app) runRender(render);
+  if (*compare_app) return runCompare(compare);
   if (*luft_app) runLuftFigures(figures);
   return 0;
 }

@@ -9,6 +9,7 @@
 #include "verdure/grow.h"
 #include "verdure/plant_io.h"
 #include "verdure/render.h"
+#include "verdure/transfer.h"
 
 /// One function for each subcommand: parsed options in, files and lines out. All throw Error.
 namespace verdure::app {
@@ -42,6 +43,14 @@ struct BakeParameters {
   DensityOptions checked() const;
 };
 
+/// What `bake` traces by rays, as the command line gives it.
+struct RayParameters {
+  std::string ambient = "density";
+  int rays = 256;
+  int bounces = 3;
+  int transfer_bands = 0;  ///< 0 = none
+};
+
 struct BakeCommand {
   std::string input;
   std::string output;
@@ -49,6 +58,7 @@ struct BakeCommand {
   BakeParameters bake;
   std::string surface;     ///< file that replaces the extracted surface
   std::string population;  ///< layout file
+  RayParameters rays;
   std::string report;
   bool color1 = false;
   bool json = false;
@@ -107,6 +117,21 @@ std::vector<float> parseNumbers(const std::string& option, const std::string& te
                                 std::size_t count);
 /// The light that a file brought along in `_AO` and NORMAL, if it has any.
 std::optional<CrownLight> lightOfFile(const Plant& plant);
+/// Where a plant stands: on the zero of its own heights, where strands may hang below it; one that
+/// was modelled around or away from it stands on its lowest point.
+float groundHeight(const Plant& plant);
+/// What a bake's rays found, beside the light that it changed.
+struct RayReport {
+  std::optional<PlantTransfer> transfer;
+  int rays = 0, bounces = 0;
+  double seconds_normals = 0, seconds_ambient = 0, seconds_transfer = 0;
+  double mean_ambient = 0;  ///< of the traced coefficients
+};
+/// Traces what the command asks for, if anything: open directions and ambient coefficients replace
+/// those of `light`.
+std::optional<RayReport> traceLight(const BakeCommand& command, const Plant& plant,
+                                    CrownLight& light);
+std::string jsonOf(const RayReport& report);
 std::string jsonOf(const DensityReport& report);
 std::string jsonOf(const PlantReport& report);
 

@@ -55,7 +55,7 @@ void addBakeOptions(CLI::App& command, BakeParameters& bake, const char* group) 
       ->capture_default_str();
   command
       .add_option("--normals", bake.normals,
-                  "Leaf normals: surface-point, surface-vertex, ellipsoid or keep")
+                  "Leaf normals: surface-point, surface-vertex, ellipsoid, keep, or in bake bent")
       ->group(group)
       ->capture_default_str();
   command.add_option("--blend", o.blend, "0 = the leaf's normals, 1 = the crown's")
@@ -129,6 +129,22 @@ int run(int argc, char** argv) {
                        "Use this surface instead of the field's: .obj .ply .glb");
   bake_app->add_option("--population", bake.population,
                        "Bake a group in one field: JSON layout (see docs/population.md)");
+  constexpr const char* kRayGroup = "Rays";
+  bake_app
+      ->add_option("--ambient", bake.rays.ambient,
+                   "Ambient coefficients: density, or ray-traced (slower, true)")
+      ->group(kRayGroup)
+      ->capture_default_str();
+  bake_app
+      ->add_option("--transfer", bake.rays.transfer_bands,
+                   "Trace transfer vectors of so many bands, 2 to 7, into OUTPUT's .transfer")
+      ->group(kRayGroup);
+  bake_app->add_option("--rays", bake.rays.rays, "Rays of each vertex and side of a leaf")
+      ->group(kRayGroup)
+      ->capture_default_str();
+  bake_app->add_option("--bounces", bake.rays.bounces, "Most surfaces that light meets on its way")
+      ->group(kRayGroup)
+      ->capture_default_str();
   bake_app->add_option("--report", bake.report, "Write every number of the bake as JSON");
   bake_app->add_flag("--color1", bake.color1, "Write the ambient coefficient as COLOR_1 too");
   bake_app->add_flag("--json", bake.json, "Print the report as JSON");

@@ -146,6 +146,10 @@ fs::path placementFile(const fs::path& output, std::size_t placement) {
 void bakePopulation(const BakeCommand& command) {
   if (!command.surface.empty())
     throw Error("--surface", "cannot be used with --population", "leave one of them out");
+  if (command.rays.ambient != "density" || command.rays.transfer_bands > 0 ||
+      command.bake.normals == "bent")
+    throw Error("--population", "cannot be used with rays (--ambient, --transfer, --normals bent)",
+                "bake each plant alone");
   DensityOptions options = command.bake.checked();
   const auto [plants, placements] = readPopulation(command);
   for (std::size_t i = 0; i < placements.size(); ++i)
@@ -274,20 +278,27 @@ DensityOptions BakeParameters::checked() const {
 void runBake(const BakeCommand& command) {
   checkOutput(command.output, {".glb", ".gltf"});
   if (!command.report.empty()) checkWritable(command.report);
+  if (command.rays.transfer_bands != 0) checkWritable(transferPath(command.output));
   if (fs::path(command.report).lexically_normal() == fs::path(command.output).lexically_normal())
     throw Error("--report", "names the output file", "choose another file");
   if (!command.population.empty()) return bakePopulation(command);
-  DensityOptions options = command.bake.checked();
+  BakeParameters parameters = command.bake;
+  if (parameters.normals == "bent") parameters.normals = "keep";  // traceLight() finds them
+  DensityOptions options = parameters.checked();
   const Plant plant = loadPlant(command.input, command.load);
   std::optional<Surface> surface;
   if (!command.surface.empty()) surface = loadSurface(command.surface, plant.origin);
-  const DensityBake bake = [&] {
+  DensityBake bake = [&] {
     Progress progress("bake");
     showProgress(options, progress);
     return bakeDensity(plant, options, surface ? &*surface : nullptr);
   }();
+  const std::optional<RayReport> rays = traceLight(command, plant, bake.light);
   savePlant(plant, &bake.light, command.output, {command.color1});
-  const std::string json = jsonOf(bake.report);
+  if (rays && rays->transfer) saveTransfer(*rays->transfer, plant, command.output);
+  Json report = Json::parse(jsonOf(bake.report));
+  if (rays) report["rays"] = Json::parse(jsonOf(*rays));
+  const std::string json = report.dump(2);
   if (!command.report.empty()) writeFile(command.report, json + "\n");
   if (command.json) {
     fmt::print("{}\n", json);
@@ -301,6 +312,14 @@ void runBake(const BakeCommand& command) {
       command.output, r.leaves, r.rho, r.tau, r.d_min, r.surface_vertices,
       r.surface_vertices == 0 || r.watertight ? "" : ", not watertight", r.mean_ambient,
       r.seconds_total);
+  if (!rays) return;
+  fmt::print("traced {} rays a vertex, {} bounces", rays->rays, rays->bounces);
+  if (rays->seconds_ambient > 0.0)
+    fmt::print("; mean ambient {:.2f} in {:.2f} s", rays->mean_ambient, rays->seconds_ambient);
+  if (rays->transfer)
+    fmt::print("; {}, {} bands, in {:.2f} s", transferPath(command.output).string(),
+               rays->transfer->bands, rays->seconds_transfer);
+  fmt::print("\n");
 }
 
 std::string jsonOf(const DensityReport& r) {

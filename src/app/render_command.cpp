@@ -43,16 +43,6 @@ Terms parseTerms(const RenderCommand& command) {
   return terms;
 }
 
-/// Plants stand on the zero of their own heights, where strands may hang below it; those that were
-/// modelled around or away from it stand on their lowest point.
-float groundHeight(const Plant& plant) {
-  constexpr float kMostBelow = 0.25f;  // share of the height
-  const Bounds box = bounds(plant);
-  const bool from_zero = plant.origin == glm::dvec3(0.0) && box.min.y <= 0.0f &&
-                         -box.min.y < kMostBelow * box.size().y;
-  return from_zero ? 0.0f : box.min.y;
-}
-
 Camera parseCamera(const RenderCommand& command, const Scene& scene, float aspect) {
   const float fov = radians(static_cast<float>(command.fov_deg));
   if (command.camera == "auto")
@@ -64,6 +54,14 @@ Camera parseCamera(const RenderCommand& command, const Scene& scene, float aspec
 }
 
 }  // namespace
+
+float groundHeight(const Plant& plant) {
+  constexpr float kMostBelow = 0.25f;  // share of the height
+  const Bounds box = bounds(plant);
+  const bool from_zero = plant.origin == glm::dvec3(0.0) && box.min.y <= 0.0f &&
+                         -box.min.y < kMostBelow * box.size().y;
+  return from_zero ? 0.0f : box.min.y;
+}
 
 void checkOutput(const std::string& path, const std::vector<std::string>& extensions) {
   if (std::find(extensions.begin(), extensions.end(), std::filesystem::path(path).extension()) ==

@@ -2,11 +2,14 @@
 #define VERDURE_OPTICAL_DEPTH_H_
 
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "verdure/density.h"
 #include "verdure/plant.h"
 
 /// The optical-depth field: how much surface stands around a point, seen from it.
@@ -83,10 +86,86 @@ struct DepthModel {
   float k = 1.0f;
 };
 
+/// Found once, over all plants of docs/openness.md.
+inline constexpr float kNearGain = 2.0f;
+inline constexpr DepthModel kLeafDepth{0.06f, 1.09f, 0.87f};
+inline constexpr DepthModel kWoodDepth{0.05f, 0.85f, 0.90f};
+/// Of wood's hemisphere: light = a + b exp(-k hemisphere).
+inline constexpr DepthModel kWoodLight{0.0f, 1.0f, 0.80f};
+
 float opennessOf(const DepthSums& sums, const DepthModel& model);
 /// The same for the light of an even sky on a surface that faces away from `toward`, where the
 /// plant is thinnest (cosine-weighted mean over that hemisphere).
 float outwardLightOf(const DepthSums& sums, const DepthModel& model);
+
+/// The models of a plant's leaves and wood. The defaults were fitted to traced openness over the
+/// eight grown species and ten foreign plants (docs/openness.md).
+struct DepthModels {
+  DepthModel leaf = kLeafDepth;
+  DepthModel wood = kWoodDepth;
+  DepthModel of(PartKind kind) const { return kind == PartKind::kFoliage ? leaf : wood; }
+};
+
+/// Options of a plant's field: near_radius is the side of a square of a leaf's mean opaque area (of
+/// a surfel's, without leaves).
+DepthFieldOptions plantDepthOptions(const Plant& plant, std::span<const Surfel> surfels);
+
+/// The field at every vertex of every mesh, one after another, with the vertices' own normals.
+/// Triangles that meet at a vertex (by position) are left out: it sees them edge-on. `surfels` are
+/// plantSurfels(). `terms`, if given: terms evaluated for a vertex, on average.
+std::vector<DepthSums> vertexDepths(const Plant& plant, std::span<const Surfel> surfels,
+                                    const OpticalDepthField& field, double* terms = nullptr);
+
+/// How well a prediction agrees with traced openness.
+struct Agreement {
+  double rms = 0.0;
+  double rank = 0.0;  ///< Spearman's correlation
+};
+Agreement agreementOf(std::span<const float> predicted, std::span<const float> traced);
+
+/// What a plant's fit found.
+struct DepthFit {
+  DepthModels models;
+  std::size_t samples = 0;  ///< traced vertices; those that see nothing at all are left out
+  Agreement before, after;  ///< of openness at the samples: defaults, fitted models
+};
+
+struct DepthOptions {
+  CrownNormals normals = CrownNormals::kOpticalDepth;  ///< or kKeep
+  float blend = 1.0f;                                  ///< 0 = leaf normal, 1 = crown normal
+  bool fit = false;         ///< fit the models to openness traced at some hundred vertices
+  std::uint32_t seed = 1;   ///< of the choice of these
+  std::size_t max_memory_bytes = std::size_t{4} << 30;  ///< of the rays' scene
+  std::function<void(const char* step, double share)> progress;
+};
+
+/// Every number that the bake found or measured.
+struct DepthReport {
+  DepthModels models;
+  float near_gain = 0, near_radius = 0;
+  std::optional<DepthFit> fit;
+  std::size_t surfels = 0;         ///< those with an area
+  double area_m2 = 0;              ///< theirs, as it counts
+  double terms_per_vertex = 0;     ///< evaluated, of `surfels`
+  float depth_min = 0, depth_max = 0;  ///< X at vertices
+  double mean_openness = 0;
+  double mean_ambient = 0;
+  std::size_t vertices = 0, foliage_vertices = 0;
+  double seconds_surfels = 0, seconds_field = 0, seconds_fit = 0, seconds_light = 0,
+         seconds_total = 0;
+};
+
+struct DepthBake {
+  CrownLight light;
+  DepthReport report;
+};
+
+/// Bakes one plant. Leaf normals turn to where the crown is thinnest, against DepthSums::toward.
+/// The ambient coefficient is the share of an even sky's light that reaches the vertex: for leaves
+/// that take crown normals outwardLightOf(); for leaves that keep their own, whose back is lit as
+/// well, opennessOf(); for wood the light on the hemisphere of its normal, exp of the hemisphere's
+/// depth. Throws Error: no vertices, positions that are not finite, options out of range.
+DepthBake bakeOpticalDepth(const Plant& plant, const DepthOptions& options = {});
 
 }  // namespace verdure
 

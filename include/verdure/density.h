@@ -21,7 +21,8 @@ enum class CrownNormals {
   kSurfaceVertex,  ///< the normal of the nearest vertex of the surface (the paper's)
   kSurfacePoint,   ///< the normal at the nearest point of the surface, from the gradient there
   kEllipsoid,      ///< the normal of the foliage's bounding ellipsoid (the paper's baseline)
-  kKeep            ///< leaf normals stay
+  kKeep,           ///< leaf normals stay
+  kOpticalDepth    ///< to where the crown is thinnest (verdure/optical_depth.h)
 };
 
 /// Parameters of the bake; what is not set is found from the plant.

@@ -37,6 +37,8 @@ void checkOptions(const DensityOptions& o) {
   require(finite(o.exponent) && o.exponent > 0.0f, "the exponent must be above 0", "1 is usual");
   require(o.blend >= 0.0f && o.blend <= 1.0f, "the blend must lie in [0, 1]",
           "1 takes the crown's normals");
+  require(o.normals != CrownNormals::kOpticalDepth, "it has no optical-depth normals",
+          "use --field optical-depth, or --normals surface-point");
 }
 
 /// The leaves of one plant, checked.
@@ -307,6 +309,7 @@ std::vector<glm::vec3> crownNormals(const CrownField& crown, std::span<const glm
   std::vector<glm::vec3> normals(points.size());
   switch (options.normals) {
     case CrownNormals::kKeep:
+    case CrownNormals::kOpticalDepth:  // refused by checkOptions
       break;
     case CrownNormals::kEllipsoid: {
       const glm::vec3 half = glm::max(0.5f * foliage.size(), glm::vec3(1e-6f));

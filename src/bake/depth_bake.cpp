@@ -1,0 +1,200 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/type_precision.hpp>
+
+#include "bake/depth_fit.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "verdure/error.h"
+#include "verdure/optical_depth.h"
+
+namespace verdure {
+namespace {
+
+/// The triangles that meet at each vertex, by position.
+class Fans {
+ public:
+  explicit Fans(const Mesh& mesh) : fan_of_vertex_(mesh.positions.size()) {
+    // A hash table of positions: sorting them takes several times as long.
+    std::size_t size = 16;
+    while (size < 2 * mesh.positions.size()) size *= 2;
+    std::vector<std::uint32_t> table(size, kNone);
+    std::vector<std::uint32_t> first_vertex;
+    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
+      const glm::vec3 p = mesh.positions[v] + 0.0f;  // -0 is 0
+      std::uint64_t key = 1469598103934665603ull;
+      for (int a = 0; a < 3; ++a) key = (key ^ glm::floatBitsToUint(p[a])) * 0x9e3779b97f4a7c15ull;
+      std::size_t slot = (key >> 20) & (size - 1);
+      while (table[slot] != kNone && mesh.positions[first_vertex[table[slot]]] != p)
+        slot = (slot + 1) & (size - 1);
+      if (table[slot] == kNone) {
+        table[slot] = static_cast<std::uint32_t>(first_vertex.size());
+        first_vertex.push_back(v);
+      }
+      fan_of_vertex_[v] = table[slot];
+    }
+    first_.assign(first_vertex.size() + 1, 0);
+    for (const std::uint32_t v : mesh.indices) ++first_[fan_of_vertex_[v] + 1];
+    for (std::size_t f = 1; f < first_.size(); ++f) first_[f] += first_[f - 1];
+    triangles_.resize(mesh.indices.size());
+    std::vector<std::uint32_t> filled(first_.begin(), first_.end() - 1);
+    for (std::size_t i = 0; i < mesh.indices.size(); ++i)
+      triangles_[filled[fan_of_vertex_[mesh.indices[i]]]++] = static_cast<std::uint32_t>(i / 3);
+  }
+
+  std::span<const std::uint32_t> at(std::size_t vertex) const {
+    const std::uint32_t fan = fan_of_vertex_[vertex];
+    return std::span(triangles_).subspan(first_[fan], first_[fan + 1] - first_[fan]);
+  }
+
+ private:
+  std::vector<std::uint32_t> fan_of_vertex_, first_, triangles_;
+};
+
+void checkOptions(const DepthOptions& o) {
+  if (!(o.blend >= 0.0f && o.blend <= 1.0f))
+    throw Error("optical-depth bake", "the blend must lie in [0, 1]", "1 takes the crown's normals");
+  if (o.normals != CrownNormals::kOpticalDepth && o.normals != CrownNormals::kKeep)
+    throw Error("optical-depth bake", "these normals come from the metaball field's surface",
+                "use --normals optical-depth or keep, or --field metaball");
+}
+
+glm::vec3 crownNormal(const DepthSums& sums, const glm::vec3& own, float blend) {
+  const float length = glm::length(sums.toward);
+  if (!(length > 1e-6f * sums.depth)) return own;
+  const glm::vec3 crown = -sums.toward / length;
+  const glm::vec3 mixed = blend < 1.0f ? glm::mix(own, crown, blend) : crown;
+  const float mixed_length = glm::length(mixed);
+  return mixed_length > 1e-4f ? mixed / mixed_length : own;
+}
+
+}  // namespace
+
+DepthFieldOptions plantDepthOptions(const Plant& plant, std::span<const Surfel> surfels) {
+  double leaf_area = 0.0, area = 0.0;
+  std::size_t at = 0;
+  for (const Mesh& mesh : plant.meshes)
+    for (std::size_t t = 0; t < mesh.triangleCount(); ++t, ++at) {
+      area += double{surfels[at].area};
+      if (mesh.kind == PartKind::kFoliage) leaf_area += double{surfels[at].area};
+    }
+  DepthFieldOptions options;
+  options.near_gain = kNearGain;
+  const bool leaves = leaf_area > 0.0 && !plant.leaves.empty();
+  const double mean = leaves ? leaf_area / static_cast<double>(plant.leaves.size())
+                             : area / static_cast<double>(std::max<std::size_t>(at, 1));
+  if (mean > 0.0) options.near_radius = static_cast<float>(std::sqrt(mean));
+  return options;
+}
+
+std::vector<DepthSums> vertexDepths(const Plant& plant, std::span<const Surfel> surfels,
+                                    const OpticalDepthField& field, double* terms) {
+  std::vector<glm::vec3> points, normals;
+  for (const Mesh& mesh : plant.meshes) {
+    points.insert(points.end(), mesh.positions.begin(), mesh.positions.end());
+    normals.insert(normals.end(), mesh.normals.begin(), mesh.normals.end());
+  }
+  std::vector<DepthSums> sums(points.size());
+  const double evaluated = field.sumAt(points, normals, sums);
+  if (terms != nullptr) *terms = evaluated;
+  std::vector<std::size_t> first_vertex, first_surfel;
+  std::size_t vertex = 0, surfel = 0;
+  for (const Mesh& mesh : plant.meshes) {
+    first_vertex.push_back(vertex);
+    first_surfel.push_back(surfel);
+    vertex += mesh.positions.size();
+    surfel += mesh.triangleCount();
+  }
+  parallelFor(plant.meshes.size(), 1, [&](std::size_t m) {
+    const Mesh& mesh = plant.meshes[m];
+    const Fans fans(mesh);
+    parallelChunks(mesh.positions.size(), 8192, [&](std::size_t begin, std::size_t end) {
+      std::vector<Surfel> own;
+      for (std::size_t v = begin; v < end; ++v) {
+        own.clear();
+        for (const std::uint32_t t : fans.at(v)) own.push_back(surfels[first_surfel[m] + t]);
+        const std::size_t at = first_vertex[m] + v;
+        const DepthSums off = field.termsOf(own, points[at], normals[at]);
+        sums[at].depth = std::max(sums[at].depth - off.depth, 0.0f);
+        sums[at].toward -= off.toward;
+        sums[at].hemisphere = std::max(sums[at].hemisphere - off.hemisphere, 0.0f);
+      }
+    });
+  });
+  return sums;
+}
+
+DepthBake bakeOpticalDepth(const Plant& plant, const DepthOptions& options) {
+  checkOptions(options);
+  const auto show = [&](const char* step, double share) {
+    if (options.progress) options.progress(step, share);
+  };
+  Timer total, timer;
+  DepthBake bake;
+  DepthReport& report = bake.report;
+  report.vertices = vertexCount(plant);
+  if (report.vertices == 0 || triangleCount(plant) == 0)
+    throw Error(plant.name, "the plant has no triangles", "choose another plant");
+  show("surfaces", 0.0);
+  const std::vector<Surfel> surfels = plantSurfels(plant);
+  for (const Surfel& s : surfels) report.area_m2 += double{s.area};
+  const DepthFieldOptions field_options = plantDepthOptions(plant, surfels);
+  report.near_gain = field_options.near_gain;
+  report.near_radius = field_options.near_radius;
+  report.seconds_surfels = timer.lap();
+
+  show("optical depth", 0.1);
+  const OpticalDepthField field(surfels, field_options);
+  report.surfels = field.surfelCount();
+  const std::vector<DepthSums> sums =
+      vertexDepths(plant, surfels, field, &report.terms_per_vertex);
+  report.seconds_field = timer.lap();
+  if (options.fit) {
+    show("rays", 0.6);
+    report.fit = fitDepthModels(plant, sums, options.seed, options.max_memory_bytes);
+    report.models = report.fit->models;
+  }
+  report.seconds_fit = timer.lap();
+
+  show("vertices", 0.8);
+  bake.light.meshes.resize(plant.meshes.size());
+  report.depth_min = report.depth_max = sums[0].depth;
+  std::size_t first = 0;
+  for (std::size_t m = 0; m < plant.meshes.size(); ++m) {
+    const Mesh& mesh = plant.meshes[m];
+    MeshLight& out = bake.light.meshes[m];
+    const bool leaves = mesh.kind == PartKind::kFoliage;
+    const bool turned = leaves && options.normals == CrownNormals::kOpticalDepth;
+    const DepthModel model = report.models.of(mesh.kind);
+    out.normals = mesh.normals;
+    out.ambient.resize(mesh.positions.size());
+    std::vector<float> openness(mesh.positions.size());
+    parallelFor(mesh.positions.size(), 4096, [&](std::size_t v) {
+      const DepthSums& s = sums[first + v];
+      openness[v] = opennessOf(s, model);
+      const float light =
+          !leaves ? kWoodLight.a + kWoodLight.b * std::exp(-kWoodLight.k * s.hemisphere)
+          : turned ? outwardLightOf(s, model)
+                   : openness[v];
+      out.ambient[v] = std::clamp(light, 1.0f / 255.0f, 1.0f);
+      if (turned) out.normals[v] = crownNormal(s, mesh.normals[v], options.blend);
+    });
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+      report.depth_min = std::min(report.depth_min, sums[first + v].depth);
+      report.depth_max = std::max(report.depth_max, sums[first + v].depth);
+      report.mean_openness += double{openness[v]};
+      report.mean_ambient += double{out.ambient[v]};
+    }
+    if (leaves) report.foliage_vertices += mesh.positions.size();
+    first += mesh.positions.size();
+  }
+  report.mean_openness /= static_cast<double>(report.vertices);
+  report.mean_ambient /= static_cast<double>(report.vertices);
+  report.seconds_light = timer.lap();
+  report.seconds_total = total.seconds();
+  return bake;
+}
+
+}  // namespace verdure

@@ -12,8 +12,6 @@
 namespace verdure {
 namespace {
 
-constexpr int kGroundTextureSize = 512;
-constexpr int kGroundNoiseSize = 128;
 constexpr vk::ImageAspectFlags kColorAspect = vk::ImageAspectFlagBits::eColor;
 constexpr vk::ImageAspectFlags kDepthAspect = vk::ImageAspectFlagBits::eDepth;
 
@@ -49,9 +47,10 @@ FrameDrawer::FrameDrawer(const gpu::Device& device)
       sky_pass_(device, layout_),
       timers_(device, 3) {
   gpu::Upload upload(device);
-  ground_texture_ = upload.texture(buildColorMips(makeGroundTexture(kGroundTextureSize), {}).levels,
-                                   vk::Format::eR8G8B8A8Srgb);
-  ground_noise_ = upload.texture(buildLinearMips(makeGroundNoise(kGroundNoiseSize)).levels,
+  ground_texture_ =
+      upload.texture(buildColorMips(makeGroundTexture(look::kGroundTextureSize), {}).levels,
+                     vk::Format::eR8G8B8A8Srgb);
+  ground_noise_ = upload.texture(buildLinearMips(makeGroundNoise(look::kGroundNoiseSize)).levels,
                                  vk::Format::eR8G8B8A8Unorm);
   upload.finish();
   // No anisotropic filter: ground_pass.frag takes several taps along a grazing footprint itself.

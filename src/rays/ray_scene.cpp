@@ -460,9 +460,12 @@ SurfacePoint RayScene::surfaceAt(const RayHit& hit, const Ray& ray) const {
 }
 
 glm::vec3 RayScene::originOff(const glm::vec3& position, const glm::vec3& normal) const {
+  return position + normal * originOffset(position);
+}
+
+float RayScene::originOffset(const glm::vec3& position) const {
   const glm::vec3 size = glm::abs(position);
-  const float largest = std::max({size.x, size.y, size.z, state_->least_size, 1e-6f});
-  return position + normal * (largest * 0x1p-19f);
+  return std::max({size.x, size.y, size.z, state_->least_size, 1e-6f}) * 0x1p-19f;
 }
 
 std::size_t RayScene::memoryBytes() const {

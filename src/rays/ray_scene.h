@@ -99,6 +99,9 @@ class RayScene {
   /// behind it, about 2^-19 of the coordinates' size.
   glm::vec3 originOff(const glm::vec3& position, const glm::vec3& normal) const;
 
+  /// How far that is, m.
+  float originOffset(const glm::vec3& position) const;
+
   /// Bytes that Embree holds for the scene.
   std::size_t memoryBytes() const;
 

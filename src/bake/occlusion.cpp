@@ -1,0 +1,84 @@
+#include "verdure/occlusion.h"
+
+#include <algorithm>
+#include <array>
+
+#include "bake/light_path.h"
+#include "bake/ray_bake.h"
+
+namespace verdure {
+
+std::vector<VertexId> allVertices(const Plant& plant) {
+  std::vector<VertexId> vertices;
+  vertices.reserve(vertexCount(plant));
+  for (std::uint32_t m = 0; m < plant.meshes.size(); ++m)
+    for (std::uint32_t v = 0; v < plant.meshes[m].positions.size(); ++v) vertices.push_back({m, v});
+  return vertices;
+}
+
+std::vector<Openness> traceOpenness(const Plant& plant, std::span<const VertexId> vertices,
+                                    const RayOptions& options) {
+  const RayBake bake(plant, options);
+  std::vector<Openness> result(vertices.size());
+  bake.forEachVertex(vertices, [&](std::size_t i, Random& random) {
+    const ShiftedLattice lattice(options.rays, random);
+    std::array<Ray, RayBake::kBatch> rays;
+    std::array<std::uint8_t, RayBake::kBatch> free;
+    int open = 0;
+    glm::vec3 sum(0.0f);
+    for (int first = 0; first < options.rays; first += RayBake::kBatch) {
+      std::size_t count = 0;
+      for (int r = first; r < std::min(first + RayBake::kBatch, options.rays); ++r) {
+        const glm::vec2 u = lattice.point(r);
+        const glm::vec3 direction = sphereDirection(u.x, u.y);
+        if (options.ground_height && direction.y < 0.0f) continue;
+        rays[count++] = bake.starts.from(vertices[i], direction);
+      }
+      bake.scene.visibility({rays.data(), count}, {free.data(), count});
+      for (std::size_t r = 0; r < count; ++r) {
+        if (free[r] == 0) continue;
+        ++open;
+        sum += rays[r].direction;
+      }
+    }
+    result[i].share = static_cast<float>(open) / static_cast<float>(options.rays);
+    if (open > 0) result[i].direction = sum / static_cast<float>(open);
+  });
+  return result;
+}
+
+std::vector<glm::vec3> traceAmbient(const Plant& plant, std::span<const VertexId> vertices,
+                                    const RayOptions& options, const CrownLight* normals) {
+  const RayBake bake(plant, options, normals);
+  std::vector<glm::vec3> result(vertices.size());
+  const bool ground = options.ground_height.has_value();
+  bake.forEachVertex(vertices, [&](std::size_t i, Random& random) {
+    const ShiftedLattice lattice(options.rays, random);
+    const glm::mat3 axes = axesAround(bake.normalOf(vertices[i]));
+    glm::vec3 sum(0.0f);
+    for (int r = 0; r < options.rays; ++r) {
+      const glm::vec2 u = lattice.point(r);
+      const Ray ray = bake.starts.from(vertices[i], axes * cosineDirection(u.x, u.y));
+      followLight(bake.scene, ray, options.bounces, ground, random,
+                  [&](const glm::vec3&, const glm::vec3& throughput, int) { sum += throughput; });
+    }
+    result[i] = sum / static_cast<float>(options.rays);
+  });
+  return result;
+}
+
+CrownLight bakeAmbient(const Plant& plant, const RayOptions& options, const CrownLight* normals) {
+  const std::vector<glm::vec3> ambient = traceAmbient(plant, allVertices(plant), options, normals);
+  CrownLight light;
+  std::size_t at = 0;
+  for (std::size_t m = 0; m < plant.meshes.size(); ++m) {
+    MeshLight& mesh = light.meshes.emplace_back();
+    mesh.normals = normals != nullptr ? normals->meshes[m].normals : plant.meshes[m].normals;
+    for (std::size_t v = 0; v < mesh.normals.size(); ++v, ++at)
+      mesh.ambient.push_back(std::clamp(glm::dot(ambient[at], glm::vec3(0.2126f, 0.7152f, 0.0722f)),
+                                        1.0f / 255.0f, 1.0f));
+  }
+  return light;
+}
+
+}  // namespace verdure

@@ -5,6 +5,7 @@
 #include "shared/density.h"
 #include "shared/illumination.h"
 #include "shared/sky.h"
+#include "shared/sky_formula.h"
 
 // Every shared function of the renderer, called with eight numbers in [0, 1]: compiled as C++ and
 // as GLSL, so that one test compares both.
@@ -17,8 +18,9 @@ struct SharedResults {
   vec4 light;     // illumination, specularFactor
   vec4 sky;       // skyColor, diffuseFactor
   vec4 transfer;  // srgbFromLinear, linearFromSrgb, ground's mean
+  vec4 formula;   // skyLuminance
 };
-SHARED_SIZE(SharedResults, 80);
+SHARED_SIZE(SharedResults, 96);
 
 SHARED_FUNCTION SharedResults evaluateShared(vec4 a, vec4 b) {
   vec3 n = normalize(vec3(a.x - 0.5f, a.y - 0.5f, a.z - 0.45f));
@@ -40,6 +42,16 @@ SHARED_FUNCTION SharedResults evaluateShared(vec4 a, vec4 b) {
   r.light = vec4(lit, specular);
   r.sky = vec4(sky, diffuse);
   r.transfer = vec4(srgbFromLinear(a.x), linearFromSrgb(a.x), mean.x, mean.y + mean.z);
+  SkyFormula formula;
+  formula.sun = vec4(n.x, n.y, n.z, 0.0f);
+  formula.a = vec4(-1.1f + a.x, -0.3f, -0.3f, 0.0f);
+  formula.b = vec4(-0.2f - b.x, -0.2f, -0.3f, 0.0f);
+  formula.c = vec4(10.0f * b.y, 0.21f, 0.19f, 0.0f);
+  formula.d = vec4(-3.0f + b.z, -1.1f, -1.8f, 0.0f);
+  formula.e = vec4(0.5f * a.w, 0.03f, 0.01f, 0.0f);
+  formula.one = vec4(1.0f, 1.0f, 1.0f, 0.0f);
+  formula.scale = vec4(0.03f, 0.27f, 0.28f, 0.0f);
+  r.formula = vec4(skyLuminance(l, formula), 0.0f);
   return r;
 }
 

@@ -43,6 +43,13 @@ struct Daylight {
   Sun sun;
 };
 
+/// The sky of Preetham, Shirley, Smits, "A Practical Analytic Model for Daylight", SIGGRAPH 1999,
+/// and the sun through the same air. Turbidity 2 to 10; for lighting 2.5 (very clear) to 6 (haze):
+/// below 2.5 the horizon is far too bright (Zotti et al. 2007). `to_sun` need not be unit. A sun
+/// below the horizon leaves twilight that fades to night. Throws Error for a turbidity out of range
+/// or a direction that is none.
+Daylight preethamDaylight(float turbidity, const glm::vec3& to_sun);
+
 /// The same luminance in every direction above the horizon. `below`: in those below it, for tests
 /// (a white furnace) and light boxes.
 std::shared_ptr<const Sky> uniformSky(const glm::vec3& luminance,

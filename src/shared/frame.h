@@ -50,6 +50,19 @@ struct ToneUniforms {
 };
 SHARED_SIZE(ToneUniforms, 32);
 
+/// Push constants of transfer_pass. A vertex has, for its front and (two-sided) its back, `pairs`
+/// words for each colour channel, then `bounce_pairs`.
+struct TransferUniforms {
+  uint count;                ///< vertices of this part
+  uint first_vertex;         ///< of the light that is written
+  uint pairs;                ///< of coefficients by the sky
+  uint bounce_pairs;         ///< of the bounced part's, by the sun
+  uint first_weight;         ///< of the sky's weights for this number of bands
+  uint first_bounce_weight;  ///< of the sun's
+  uint two_sided;            ///< 0 or 1
+};
+SHARED_SIZE(TransferUniforms, 28);
+
 SHARED_END
 
 #endif  // VERDURE_SHARED_FRAME_H_

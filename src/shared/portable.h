@@ -22,6 +22,7 @@ using glm::vec4;
 using uint = std::uint32_t;
 using glm::abs;
 using glm::acos;
+using glm::asin;
 using glm::atan;
 using glm::clamp;
 using glm::cross;

@@ -1,6 +1,3 @@
-#include <cmath>
-#include <glm/gtc/constants.hpp>
-
 #include "verdure/sky.h"
 
 namespace verdure {
@@ -18,11 +15,6 @@ class UniformSky final : public Sky {
 };
 
 }  // namespace
-
-glm::vec3 Sun::illuminance() const {
-  const float s = std::sin(angular_radius);
-  return luminance * (glm::pi<float>() * s * s);
-}
 
 std::shared_ptr<const Sky> uniformSky(const glm::vec3& luminance, const glm::vec3& below) {
   return std::make_shared<UniformSky>(luminance, below);

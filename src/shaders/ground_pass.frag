@@ -3,7 +3,6 @@
 #include "frame_set.glsl"
 #include "shared/illumination.h"
 #include "terms.glsl"
-#include "ambient.glsl"
 #include "dome.glsl"
 #include "sun_visibility.glsl"
 

@@ -3,8 +3,8 @@
 #include "frame_set.glsl"
 #include "shared/illumination.h"
 #include "shared/leaf.h"
+#include "shared/sh.h"
 #include "terms.glsl"
-#include "ambient.glsl"
 #include "sun_visibility.glsl"
 
 layout(set = 1, binding = 0) uniform sampler2D base_color;
@@ -81,8 +81,8 @@ void main() {
       near = beyond = frame.open_sky.rgb;
     } else {
       float k_a = kAmbientSource == kBaked ? in_normal.w : 1.0;
-      near = openLight(n) * k_a;
-      if (kTransmission) beyond = openLight(-n) * k_a;
+      near = shIrradiance(n, frame.open_light) * k_a;
+      if (kTransmission) beyond = shIrradiance(-n, frame.open_light) * k_a;
     }
   }
   vec3 ambient = near * color;

@@ -18,19 +18,16 @@ struct FrameUniforms {
   vec4 sun_light;          ///< irradiance / pi of a surface facing the sun; w = 1 / size of the map
   vec4 sun_disk;           ///< luminance; w = angular radius
   vec4 open_sky;           ///< irradiance / pi of open ground by the sky
-  vec4 ground_light;       ///< luminance of open ground: the light from below
   vec4
       ground;  ///< height, radius of the disc, half distance of the haze, size of a texture tile, m
   vec4 ground_map;  ///< corner x, z of the map of light on the ground, 1 / its size, m; 0 = none
   vec4 ray_right;   ///< ray through pixel (x, y) of [-1, 1]^2: forward + x right + y down
   vec4 ray_down;
   vec4 ray_forward;
-  mat4 sky_light_r;  ///< skyLight(): irradiance / pi by the sky
-  mat4 sky_light_g;
-  mat4 sky_light_b;
+  vec4 open_light[9];  ///< shIrradiance() / pi by the open sky and the open ground
   SkyFormula sky;  ///< kcd/m^2, where the sky has one
 };
-SHARED_SIZE(FrameUniforms, 624);
+SHARED_SIZE(FrameUniforms, 560);
 
 /// Push constants of one draw.
 struct DrawUniforms {

@@ -31,19 +31,6 @@ SHARED_FUNCTION vec3 illumination(vec3 ambient, vec3 sun_light, float visibility
   return ambient + sun_light * visibility * (diffuse + vec3(k_s * specular));
 }
 
-/// Irradiance / pi of an unshadowed surface with unit normal n, for one colour channel: three bands
-/// of spherical harmonics as a quadratic form of (n, 1) (Ramamoorthi, Hanrahan, "An Efficient
-/// Representation for Irradiance Environment Maps", SIGGRAPH 2001).
-SHARED_FUNCTION float skyLight(vec3 n, mat4 form) {
-  vec4 v = vec4(n, 1.0f);
-  return max(dot(v, form * v), 0.0f);
-}
-
-/// Share of the light from below, of even luminance, that a surface with unit normal n gets.
-SHARED_FUNCTION float groundShare(vec3 n) {
-  return 0.5f - 0.5f * n.y;
-}
-
 SHARED_END
 
 #endif  // VERDURE_SHARED_ILLUMINATION_H_

@@ -4,6 +4,7 @@
 #include "shared/color.h"
 #include "shared/density.h"
 #include "shared/illumination.h"
+#include "shared/sh.h"
 #include "shared/sky.h"
 #include "shared/sky_formula.h"
 
@@ -13,14 +14,15 @@
 SHARED_BEGIN
 
 struct SharedResults {
-  vec4 density;   // metaball, ambientCoefficient, length of encodeNormal, k of decodeNormal
-  vec4 normal;    // direction of decodeNormal, hazeShare
-  vec4 light;     // illumination, specularFactor
-  vec4 sky;       // skyColor, diffuseFactor
-  vec4 transfer;  // srgbFromLinear, linearFromSrgb, ground's mean
-  vec4 formula;   // skyLuminance
+  vec4 density;    // metaball, ambientCoefficient, length of encodeNormal, k of decodeNormal
+  vec4 normal;     // direction of decodeNormal, hazeShare
+  vec4 light;      // illumination, specularFactor
+  vec4 sky;        // skyColor, diffuseFactor
+  vec4 transfer;   // srgbFromLinear, linearFromSrgb, ground's mean
+  vec4 formula;    // skyLuminance
+  vec4 harmonics;  // shIrradiance
 };
-SHARED_SIZE(SharedResults, 96);
+SHARED_SIZE(SharedResults, 112);
 
 SHARED_FUNCTION SharedResults evaluateShared(vec4 a, vec4 b) {
   vec3 n = normalize(vec3(a.x - 0.5f, a.y - 0.5f, a.z - 0.45f));
@@ -52,6 +54,11 @@ SHARED_FUNCTION SharedResults evaluateShared(vec4 a, vec4 b) {
   formula.one = vec4(1.0f, 1.0f, 1.0f, 0.0f);
   formula.scale = vec4(0.03f, 0.27f, 0.28f, 0.0f);
   r.formula = vec4(skyLuminance(l, formula), 0.0f);
+  vec4 weights[9];
+  for (int i = 0; i < 9; ++i) {
+    weights[i] = a * cos(1.3f * float(i)) + b * cos(2.9f * float(i));
+  }
+  r.harmonics = vec4(shIrradiance(n, weights), 0.0f);
   return r;
 }
 

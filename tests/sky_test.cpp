@@ -4,12 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
-#include <glm/gtc/constants.hpp>
-#include <nlohmann/json.hpp>
 
 #include "shared/sky_formula.h"
 #include "sky/preetham.h"
+#include "sky_checks.h"
 #include "verdure/error.h"
 
 namespace verdure {
@@ -19,38 +17,9 @@ using nlohmann::json;
 
 constexpr double kPi = glm::pi<double>();
 
-const json& reference() {
-  static const json data = json::parse(std::ifstream(std::string(VERDURE_TEST_DATA) + "/sky.json"));
-  return data;
-}
-
-/// Angle from the zenith and azimuth (from +Z towards +X), degrees.
-glm::vec3 fromAngles(double zenith_deg, double azimuth_deg) {
-  const double z = glm::radians(zenith_deg), a = glm::radians(azimuth_deg);
-  return {std::sin(z) * std::sin(a), std::cos(z), std::sin(z) * std::cos(a)};
-}
-
-double photometric(const glm::vec3& rgb) {
-  return glm::dot(glm::dvec3(rgb), glm::dvec3(0.2126, 0.7152, 0.0722));
-}
-
-/// klx of the sky on level ground, by the midpoint rule.
-double skyIlluminance(const Sky& sky) {
-  constexpr int kRings = 60, kSectors = 90;
-  double sum = 0.0;
-  for (int i = 0; i < kRings; ++i)
-    for (int j = 0; j < kSectors; ++j) {
-      const double up = (i + 0.5) / kRings, across = std::sqrt(1.0 - up * up);
-      const double a = 2.0 * kPi * (j + 0.5) / kSectors;
-      sum += up *
-             photometric(sky.luminance(glm::vec3(across * std::sin(a), up, across * std::cos(a))));
-    }
-  return sum * 2.0 * kPi / (kRings * kSectors);
-}
-
 TEST(PreethamSky, HasTheReferenceColours) {
-  ASSERT_EQ(reference()["radiance"].size(), 96u);
-  for (const json& row : reference()["radiance"]) {
+  ASSERT_EQ(skyReference()["radiance"].size(), 96u);
+  for (const json& row : skyReference()["radiance"]) {
     for (const double turn : {0.0, 77.0, 290.0}) {
       const shared::SkyFormula formula =
           preethamFormula(row[0].get<float>(), fromAngles(row[1].get<double>(), turn));

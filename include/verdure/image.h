@@ -61,6 +61,22 @@ std::vector<std::uint8_t> encodePng(const Image& image);
 /// Writes a PNG atomically (temporary file, then rename). Throws Error.
 void writePng(const Image& image, const std::filesystem::path& path);
 
+/// Reads an OpenEXR (.exr: R, G, B or Y of the first part's display window; half, float or uint;
+/// black outside the data window) or a Radiance picture (.hdr, .pic: RGBE, flat or run-length
+/// coded; its EXPOSURE is undone). Alpha is ignored. Negative values down to a hundredth of the
+/// image's mean are noise and become 0. Throws Error for files that are truncated, malformed or of
+/// another kind (layers, deep or subsampled pixels, colours of other primaries than sRGB's), and
+/// names the pixel for values that are NaN, infinite or below that.
+HdrImage readHdrImage(const std::filesystem::path& path);
+
+/// The same from a file's bytes; `where` names it and its kind (.exr, .hdr, .pic).
+HdrImage decodeHdrImage(std::span<const std::uint8_t> file, const std::string& where);
+
+/// Writes an OpenEXR file of 32-bit floats (what is measured against a reference must not end at
+/// the 11 bits of a half), ZIP compressed: lossless. Atomic as writePng. Throws Error, also for an
+/// image without pixels or of pixels that are not finite.
+void writeExr(const HdrImage& image, const std::filesystem::path& path);
+
 }  // namespace verdure
 
 #endif  // VERDURE_IMAGE_H_

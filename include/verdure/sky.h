@@ -23,6 +23,8 @@ class Sky {
   /// The closed form that shaders evaluate, where the model has one; null else, and the renderer
   /// draws the dome from an image made of luminance().
   virtual const shared::SkyFormula* formula() const { return nullptr; }
+  /// How finely it must be sampled from the zenith to the horizon to see all of it.
+  virtual int rows() const { return 128; }
 };
 
 /// The sun as a disk of even luminance.

@@ -25,6 +25,7 @@ using glm::acos;
 using glm::asin;
 using glm::atan;
 using glm::clamp;
+using glm::cos;
 using glm::cross;
 using glm::dot;
 using glm::exp;

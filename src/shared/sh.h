@@ -20,6 +20,20 @@ SHARED_FUNCTION vec3 worldFromSh(vec3 sh) {
   return vec3(sh.y, sh.z, sh.x);
 }
 
+/// Irradiance (klx) of a surface facing a unit direction of the world, from the first nine weights
+/// of irradiance (kcd/m^2 convolved with the cosine: irradianceHarmonics()), colour in x, y, z of
+/// each. Never negative.
+SHARED_FUNCTION vec3 shIrradiance(vec3 normal, vec4 weights[9]) {
+  vec3 d = shFromWorld(normal);
+  vec4 sum = weights[0] * 0.28209479f;
+  sum += (weights[1] * d.y + weights[2] * d.z + weights[3] * d.x) * 0.48860251f;
+  sum += (weights[4] * (d.x * d.y) + weights[5] * (d.y * d.z) + weights[7] * (d.x * d.z)) *
+         1.09254843f;
+  sum += weights[6] * (0.94617470f * d.z * d.z - 0.31539157f);
+  sum += weights[8] * (0.54627422f * (d.x * d.x - d.y * d.y));
+  return max(vec3(sum.x, sum.y, sum.z), vec3(0.0f));
+}
+
 SHARED_END
 
 #endif  // VERDURE_SHARED_SH_H_

@@ -14,7 +14,7 @@ inline constexpr float kLeafExponent = 12.0f;
 inline constexpr float kWoodSpecular = 0.015f;
 inline constexpr float kWoodExponent = 8.0f;
 
-// Added to every luminance before its logarithm, kcd/m^2: a thousandth of a full moon's night.
+// Added to every luminance before its logarithm, kcd/m^2: far below a starlit sky.
 inline constexpr float kLeastLuminance = 1e-9f;
 
 // Ground: side of a tile of the texture, radius of the disc and distance at which haze hides half,

@@ -5,6 +5,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "base/parallel.h"
+#include "shared/sky_formula.h"
 
 namespace verdure {
 namespace {

@@ -48,13 +48,14 @@ float meteredLuminance(float ev) {
 
 /// Weights for transfer vectors, in frame units.
 std::vector<glm::vec2> transferWeights(const FrameLight& light, float angular_radius, float units) {
-  const auto scaled = [units](Harmonics h) {
-    for (glm::vec3& weight : h.weights) weight *= units;
-    return h;
+  const auto prepared = [units](const Harmonics& h) {
+    Harmonics mirrored = mirroredAtHorizon(h);
+    for (glm::vec3& weight : mirrored.weights) weight *= units;
+    return mirrored;
   };
-  return packWeights(scaled(withoutRinging(light.sky)),
-                     scaled(diskHarmonics(light.to_sun, angular_radius, light.sun_disk,
-                                          kMostBounceBands)));
+  return packWeights(
+      prepared(light.sky),
+      prepared(diskHarmonics(light.to_sun, angular_radius, light.sun_disk, kMostBounceBands)));
 }
 
 }  // namespace

@@ -24,7 +24,8 @@ FrameLight makeFrameLight(const View& view, const Harmonics& sky, bool ground) {
     light.sun_disk = view.daylight.sun.luminance;
   }
   light.sky = sky;
-  light.open_sky = levelIlluminance(sky) / pi;
+  light.open_sky =
+      glm::max(valueAt(irradianceHarmonics(sky), {0.0f, 1.0f, 0.0f}), glm::vec3(0.0f)) / pi;
   Harmonics all = sky;
   if (ground) {
     const glm::vec3 reflectance = view.terms.textures ? shared::groundMeanColor() : glm::vec3(0.18f);
@@ -34,8 +35,20 @@ FrameLight makeFrameLight(const View& view, const Harmonics& sky, bool ground) {
   }
   light.open_light = irradianceHarmonics(all);
   for (glm::vec3& weight : light.open_light.weights) weight /= pi;
-  light.brightest = std::max({largest(light.open_sky), largest(light.sun), largest(light.sun_disk)});
+  // A disk much smaller than the sun's is cut, lest what it lights sink below the smallest half.
+  light.brightest =
+      std::max({largest(light.open_sky), largest(light.sun),
+                std::min(largest(light.sun_disk), 0x1p16f * largest(light.sun))});
   return light;
+}
+
+Harmonics mirroredAtHorizon(const Harmonics& light) {
+  // Harmonics with even l + m are even in the height, those with odd l + m odd.
+  Harmonics mirrored = light;
+  for (int l = 0; l < light.bands; ++l)
+    for (int m = -l; m <= l; ++m)
+      mirrored.weights[static_cast<std::size_t>(l * l + l + m)] *= (l + m) % 2 == 0 ? 2.0f : 0.0f;
+  return mirrored;
 }
 
 float frameUnits(float brightest) {

@@ -22,6 +22,14 @@ struct FrameLight {
 /// the horizon is hidden, and light comes from below.
 FrameLight makeFrameLight(const View& view, const Harmonics& sky, bool ground);
 
+/// The harmonics of a light from above the horizon, for transfer vectors, which are blind below it
+/// (the ground lies there): with the upper half mirrored to the lower one, so that the light does
+/// not jump where the vectors do. A truncated product of two functions that jump at the same place
+/// loses light; smoothing the jump (Habel 2009, (5.5)) loses more. Over smooth and sharp zonal
+/// receivers under four skies the rms error of 5 bands, in shares of the open ground's light, is
+/// 0.13 as it is, 0.19 with (5.5) and 0.017 mirrored; an even sky is exact.
+Harmonics mirroredAtHorizon(const Harmonics& light);
+
 /// The power of two that brings `brightest` to [2^14, 2^15): just below the largest half float,
 /// so that the dark keeps as many digits as there can be. 1 for black.
 float frameUnits(float brightest);

@@ -56,6 +56,24 @@ struct BakeCommand {
 };
 void runBake(const BakeCommand& command);
 
+/// How a scene is lit.
+struct DaylightOptions {
+  std::string sky = "preetham";
+  std::string sun = "85,42";
+  double turbidity = 3.0;
+};
+Daylight parseDaylight(const DaylightOptions& options);
+
+/// How light becomes a picture.
+struct ExposureOptions {
+  std::string exposure = "auto";
+  double key = Exposure().key;
+  double white = Exposure().white;
+  double bloom = 0.03;
+};
+Exposure parseExposure(const ExposureOptions& options);
+float parseBloom(const ExposureOptions& options);
+
 struct RenderCommand : SceneOptions {
   std::string output;
   BakeParameters bake;
@@ -63,6 +81,9 @@ struct RenderCommand : SceneOptions {
       false;  ///< parameters of the bake were given: the file's own light is not theirs
   std::string light = "expressive";
   std::string terms;
+  DaylightOptions daylight;
+  ExposureOptions exposure;
+  int bands = 5;
   std::string background;
   int shadow_map = 2048;
   DeviceOptions device;
@@ -72,7 +93,8 @@ void runRender(const RenderCommand& command);
 
 struct ReferenceCommand : SceneOptions {
   std::string output;
-  float turbidity = 3.0f;
+  DaylightOptions daylight;
+  ExposureOptions exposure;
   int samples = 64;
   double seconds = 0.0;
   double noise = 0.0;

@@ -69,13 +69,11 @@ void addBakeOptions(CLI::App& command, BakeParameters& bake, const char* group) 
       ->capture_default_str();
 }
 
-/// The plant, the picture's size, the camera and the sun.
+/// The plant, the picture's size and the camera.
 void addSceneOptions(CLI::App& command, SceneOptions& scene) {
   command.add_option("file", scene.input, "Plant: .glb .gltf .obj .fbx .dae .ply")->required();
   addLoadOptions(command, scene.load);
   command.add_option("--size", scene.size, "WxH, pixels")->capture_default_str();
-  command.add_option("--sun", scene.sun, "AZIMUTH,ELEVATION, degrees (azimuth 0: +Z, 90: +X)")
-      ->capture_default_str();
   command
       .add_option("--camera", scene.camera,
                   "auto; AZIMUTH,ELEVATION in degrees; or X,Y,Z,TARGETX,TARGETY,TARGETZ in m")
@@ -88,6 +86,26 @@ void addSceneOptions(CLI::App& command, SceneOptions& scene) {
 void addDeviceOptions(CLI::App& command, DeviceOptions& device) {
   command.add_option("--device", device.device, "Part of the name of the Vulkan device to use");
   command.add_flag("--validation", device.validation, "Check the use of Vulkan (slow)");
+}
+
+void addDaylightOptions(CLI::App& command, DaylightOptions& daylight) {
+  command.add_option("--sky", daylight.sky, "preetham")->capture_default_str();
+  command.add_option("--sun", daylight.sun, "AZIMUTH,ELEVATION, degrees (azimuth 0: +Z, 90: +X)")
+      ->capture_default_str();
+  command.add_option("--turbidity", daylight.turbidity, "Haze of the air: 2 clear to 10 thick")
+      ->capture_default_str();
+}
+
+void addExposureOptions(CLI::App& command, ExposureOptions& exposure) {
+  command
+      .add_option("--exposure", exposure.exposure,
+                  "auto, or an exposure value at ISO 100 (15 in full sun)")
+      ->capture_default_str();
+  command.add_option("--key", exposure.key, "Brightness of the average, 0.09 dark to 0.36 light")
+      ->capture_default_str();
+  command
+      .add_option("--white", exposure.white, "Luminance of pure white, in averages times the key")
+      ->capture_default_str();
 }
 
 /// Prints one line, whatever bytes the names of files and parts hold.
@@ -150,13 +168,21 @@ int run(int argc, char** argv) {
   bake_app->add_flag("--json", bake.json, "Print the report as JSON");
 
   RenderCommand render;
-  CLI::App* render_app = app.add_subcommand("render", "Render a plant to a PNG");
+  CLI::App* render_app = app.add_subcommand("render", "Render a plant to a picture");
   addSceneOptions(*render_app, render);
-  render_app->add_option("-o,--output", render.output, "PNG to write")->required();
-  render_app->add_option("--light", render.light, "standard or expressive")->capture_default_str();
-  render_app->add_option(
-      "--terms", render.terms,
-      "Only these terms: ambient,diffuse,specular,shadow,textures (default: all)");
+  render_app->add_option("-o,--output", render.output, "File to write: .png, or .exr in kcd/m^2")
+      ->required();
+  render_app->add_option("--light", render.light, "standard, expressive or transfer")
+      ->capture_default_str();
+  render_app->add_option("--terms", render.terms,
+                         "Only these terms: ambient,diffuse,specular,shadow,textures,transmission");
+  addDaylightOptions(*render_app, render.daylight);
+  addExposureOptions(*render_app, render.exposure);
+  render_app
+      ->add_option("--bloom", render.exposure.bloom, "Share of light that the lens spreads, 0 to 1")
+      ->capture_default_str();
+  render_app->add_option("--bands", render.bands, "Bands of harmonics of the sky's light, 2 to 7")
+      ->capture_default_str();
   render_app->add_option("--background", render.background, "R,G,B in [0, 1] instead of the sky");
   render_app->add_option("--shadow-map", render.shadow_map, "Side of the shadow map, pixels")
       ->capture_default_str();
@@ -169,10 +195,11 @@ int run(int argc, char** argv) {
   CLI::App* reference_app =
       app.add_subcommand("reference", "Path-trace a plant: the truth for render (CPU)");
   addSceneOptions(*reference_app, reference);
-  reference_app->add_option("-o,--output", reference.output, "EXR to write")->required();
   reference_app
-      ->add_option("--turbidity", reference.turbidity, "Of the air, 2 (clear) to 10 (haze)")
-      ->capture_default_str();
+      ->add_option("-o,--output", reference.output, "File to write: .png, or .exr in kcd/m^2")
+      ->required();
+  addDaylightOptions(*reference_app, reference.daylight);
+  addExposureOptions(*reference_app, reference.exposure);
   reference_app->add_option("--samples", reference.samples, "Paths a pixel at most")
       ->capture_default_str();
   reference_app->add_option("--seconds", reference.seconds, "Stop after this time, 0 = never")

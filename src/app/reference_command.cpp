@@ -7,7 +7,8 @@
 
 #include "app/commands.h"
 #include "base/progress.h"
-#include "scene/camera.h"
+#include "scene/display.h"
+#include "shared/tone.h"
 #include "verdure/error.h"
 #include "verdure/reference.h"
 
@@ -17,8 +18,8 @@ void runReference(const ReferenceCommand& command) {
   ReferenceOptions options;
   std::tie(options.width, options.height) = command.sizeInPixels();
   command.checkCamera();
-  const glm::vec2 sun = command.sunAngles();
-  const Daylight light = preethamDaylight(command.turbidity, directionOf(sun.x, sun.y));
+  const Daylight light = parseDaylight(command.daylight);
+  const Exposure exposure = parseExposure(command.exposure);
   if (command.samples < 1) throw Error("--samples", "must be at least 1", "64 is a fair start");
   if (command.bounces < 1)
     throw Error("--bounces", "must be at least 1", "1 is direct light alone");
@@ -29,7 +30,7 @@ void runReference(const ReferenceCommand& command) {
   options.seconds = command.seconds;
   options.noise = command.noise;
   options.seed = command.seed;
-  checkOutput(command.output, {".exr"});
+  checkOutput(command.output, {".exr", ".png"});
 
   Progress progress("reference");
   progress.show("loading");
@@ -41,7 +42,12 @@ void runReference(const ReferenceCommand& command) {
   progress.show("tracing", 0.0);
   options.progress = [&progress](double share) { progress.show("tracing", share); };
   const ReferencePicture picture = renderReference(scene, light, options);
-  writeExr(picture.image, command.output);
+  const float average =
+      exposure.ev ? shared::meteredLuminance(*exposure.ev) : averageLuminance(picture.image);
+  if (std::filesystem::path(command.output).extension() == ".exr")
+    writeExr(picture.image, command.output);
+  else
+    writePng(displayed(picture.image, average, exposure.key, exposure.white), command.output);
   progress.show("done");
   const double paths = static_cast<double>(options.width) * options.height * picture.samples;
   if (command.json)
@@ -49,6 +55,7 @@ void runReference(const ReferenceCommand& command) {
                                               {"height", options.height},
                                               {"samples", picture.samples},
                                               {"noise", picture.noise},
+                                              {"average_kcd_m2", average},
                                               {"seconds", picture.seconds},
                                               {"paths_per_second", paths / picture.seconds}}
                            .dump(2));

@@ -18,20 +18,22 @@ namespace {
 Terms parseTerms(const RenderCommand& command) {
   Terms terms = presetTerms(command.light);
   if (command.terms.empty()) return terms;
-  terms.ambient = terms.diffuse = terms.specular = terms.shadow = terms.textures = false;
+  terms.ambient = terms.diffuse = terms.specular = terms.shadow = terms.textures =
+      terms.transmission = false;
   std::size_t begin = 0;
   while (begin <= command.terms.size()) {
     const std::size_t end = std::min(command.terms.find(',', begin), command.terms.size());
     const std::string name = command.terms.substr(begin, end - begin);
-    bool* const term = name == "ambient"    ? &terms.ambient
-                       : name == "diffuse"  ? &terms.diffuse
-                       : name == "specular" ? &terms.specular
-                       : name == "shadow"   ? &terms.shadow
-                       : name == "textures" ? &terms.textures
-                                            : nullptr;
+    bool* const term = name == "ambient"        ? &terms.ambient
+                       : name == "diffuse"      ? &terms.diffuse
+                       : name == "specular"     ? &terms.specular
+                       : name == "shadow"       ? &terms.shadow
+                       : name == "textures"     ? &terms.textures
+                       : name == "transmission" ? &terms.transmission
+                                                : nullptr;
     if (term == nullptr)
       throw Error("--terms", fmt::format("'{}' is unknown", name),
-                  "use ambient, diffuse, specular, shadow, textures");
+                  "use ambient, diffuse, specular, shadow, textures, transmission");
     *term = true;
     begin = end + 1;
   }
@@ -102,9 +104,12 @@ void runRender(const RenderCommand& command) {
   View view;
   std::tie(view.width, view.height) = command.sizeInPixels();
   view.terms = parseTerms(command);
-  const glm::vec2 sun = command.sunAngles();
-  view.sun_azimuth = sun.x;
-  view.sun_elevation = sun.y;
+  view.daylight = parseDaylight(command.daylight);
+  view.exposure = parseExposure(command.exposure);
+  view.bloom = parseBloom(command.exposure);
+  if (command.bands < 2 || command.bands > 7)
+    throw Error("--bands", fmt::format("{} is out of range", command.bands), "choose 2 to 7");
+  view.sky_bands = command.bands;
   command.checkCamera();
   if (!command.background.empty()) {
     const auto rgb = parseNumbers("--background", command.background, 3);
@@ -117,8 +122,11 @@ void runRender(const RenderCommand& command) {
   if (command.shadow_map < 16)
     throw Error("--shadow-map", "must be at least 16 pixels", "2048 is usual");
   view.shadow_map_size = command.shadow_map;
+  if (view.terms.ambient_source == AmbientSource::kTransfer)
+    throw Error("--light", "the plant carries no transfer vectors", "use standard or expressive");
   const DensityOptions bake_options = command.bake.checked();
-  checkOutput(command.output, {".png"});
+  checkOutput(command.output, {".png", ".exr"});
+  view.hdr = std::filesystem::path(command.output).extension() == ".exr";
 
   Progress progress("render");
   progress.show("device");
@@ -144,7 +152,10 @@ void runRender(const RenderCommand& command) {
   progress.show("drawing");
   renderer.setScene(scene);
   const Frame frame = renderer.render(view);
-  writePng(frame.image, command.output);
+  if (view.hdr)
+    writeExr(frame.hdr, command.output);
+  else
+    writePng(frame.image, command.output);
   progress.show("done");
   if (command.json)
     fmt::print("{}\n",
@@ -155,12 +166,14 @@ void runRender(const RenderCommand& command) {
                                       {"pack_ms", frame.times.pack_ms},
                                       {"shadow_ms", frame.times.shadow_ms},
                                       {"color_ms", frame.times.color_ms},
+                                      {"tone_ms", frame.times.tone_ms},
+                                      {"average_kcd_m2", frame.average_luminance},
                                       {"validation_messages", renderer.validationMessages()}}
                    .dump(2));
   else
-    fmt::print("{}: {}x{}, {} light, on {}; shadow {:.1f} ms, colour {:.1f} ms\n", command.output,
-               view.width, view.height, command.light, renderer.deviceName(), frame.times.shadow_ms,
-               frame.times.color_ms);
+    fmt::print("{}: {}x{}, {} light, on {}; shadow {:.1f} ms, colour {:.1f} ms, tone {:.1f} ms\n",
+               command.output, view.width, view.height, command.light, renderer.deviceName(),
+               frame.times.shadow_ms, frame.times.color_ms, frame.times.tone_ms);
 }
 
 }  // namespace verdure::app

@@ -29,11 +29,6 @@ std::pair<int, int> SceneOptions::sizeInPixels() const {
   return parseSize(size);
 }
 
-glm::vec2 SceneOptions::sunAngles() const {
-  const std::vector<float> n = parseNumbers("--sun", sun, 2);
-  return {radians(n[0]), radians(n[1])};
-}
-
 void SceneOptions::checkCamera() const {
   if (!(fov_deg > 0.0 && fov_deg < 170.0))
     throw Error("--fov", "must lie between 0 and 170 degrees", "34 is usual");

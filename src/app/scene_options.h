@@ -6,22 +6,19 @@
 #include "verdure/plant_io.h"
 #include "verdure/scene.h"
 
-/// What render and reference have in common: the plant, the camera and the sun.
+/// What render and reference have in common: the plant, and the camera.
 namespace verdure::app {
 
 struct SceneOptions {
   std::string input;
   LoadOptions load;
   std::string size = "960x720";
-  std::string sun = "85,42";
   std::string camera = "auto";
   double fov_deg = 34.0;
   bool no_ground = false;
 
   /// All throw Error that names the option.
   std::pair<int, int> sizeInPixels() const;
-  /// Azimuth and elevation, radians.
-  glm::vec2 sunAngles() const;
   void checkCamera() const;
   /// The camera that shows `scene` in a picture of `aspect` = width / height.
   Camera cameraFor(const Scene& scene, float aspect) const;

@@ -112,7 +112,7 @@ class PathTracer {
       const SurfaceModel::Point point = surfaces_.at(*hit, ray);
       if (depth == 0 && hit->ground()) {
         const float haze = shared::hazeShare(glm::length(point.position - ray.origin), haze_half_);
-        light += haze * sky_.luminance(horizonUnder(ray.direction));
+        light += haze * sky_.luminance(shared::domeDirection(ray.direction));
         throughput *= 1.0f - haze;
       }
       if (options_.search != LightSearch::kSurface)
@@ -132,11 +132,6 @@ class PathTracer {
   }
 
  private:
-  /// Where the renderer takes the far end of haze, and the sky where there is none.
-  static glm::vec3 horizonUnder(const glm::vec3& direction) {
-    return glm::normalize(glm::vec3(direction.x, std::max(direction.y, 0.01f), direction.z));
-  }
-
   glm::vec3 originTowards(const SurfaceModel::Point& point, const glm::vec3& direction) const {
     const glm::vec3& side = point.scatterer.side;
     return rays_.originOff(point.position, glm::dot(direction, side) > 0.0f ? side : -side);
@@ -146,7 +141,7 @@ class PathTracer {
   glm::vec3 seenSky(const glm::vec3& direction) const {
     glm::vec3 seen = sky_.luminance(direction);
     if (direction.y < 0.0f && seen == glm::vec3(0.0f))
-      seen = sky_.luminance(horizonUnder(direction));
+      seen = sky_.luminance(shared::domeDirection(direction));
     if (sun_.shines() && sun_.contains(direction)) seen += sun_.luminance(direction);
     return seen;
   }

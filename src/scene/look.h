@@ -13,6 +13,9 @@ inline constexpr float kGroundTile_m = 2.4f;
 inline constexpr float kHazeHalf = 22.0f;
 inline constexpr float kHazeHalfLeast_m = 80.0f;
 
+// Added to every luminance before its logarithm, kcd/m^2: far below a starlit sky.
+inline constexpr float kLeastLuminance = 1e-9f;
+
 }  // namespace verdure::look
 
 #endif  // VERDURE_SCENE_LOOK_H_

@@ -10,58 +10,37 @@
 #include "app/commands.h"
 #include "base/files.h"
 #include "base/progress.h"
-#include "plant/normals.h"
 #include "verdure/error.h"
 
 namespace verdure::app {
 namespace {
 
-float radians(float degrees) {
-  return degrees * static_cast<float>(M_PI / 180.0);
-}
-
 Terms parseTerms(const RenderCommand& command) {
   Terms terms = presetTerms(command.light);
   if (command.terms.empty()) return terms;
-  terms.ambient = terms.diffuse = terms.specular = terms.shadow = terms.textures = false;
+  terms.ambient = terms.diffuse = terms.specular = terms.shadow = terms.textures =
+      terms.transmission = false;
   std::size_t begin = 0;
   while (begin <= command.terms.size()) {
     const std::size_t end = std::min(command.terms.find(',', begin), command.terms.size());
     const std::string name = command.terms.substr(begin, end - begin);
-    bool* const term = name == "ambient"    ? &terms.ambient
-                       : name == "diffuse"  ? &terms.diffuse
-                       : name == "specular" ? &terms.specular
-                       : name == "shadow"   ? &terms.shadow
-                       : name == "textures" ? &terms.textures
-                                            : nullptr;
+    bool* const term = name == "ambient"        ? &terms.ambient
+                       : name == "diffuse"      ? &terms.diffuse
+                       : name == "specular"     ? &terms.specular
+                       : name == "shadow"       ? &terms.shadow
+                       : name == "textures"     ? &terms.textures
+                       : name == "transmission" ? &terms.transmission
+                                                : nullptr;
     if (term == nullptr)
       throw Error("--terms", fmt::format("'{}' is unknown", name),
-                  "use ambient, diffuse, specular, shadow, textures");
+                  "use ambient, diffuse, specular, shadow, textures, transmission");
     *term = true;
     begin = end + 1;
   }
   return terms;
 }
 
-Camera parseCamera(const RenderCommand& command, const Scene& scene, float aspect) {
-  const float fov = radians(static_cast<float>(command.fov_deg));
-  if (command.camera == "auto")
-    return automaticCamera(scene, radians(35.0f), radians(4.0f), aspect, fov);
-  const std::vector<float> n = parseNumbers("--camera", command.camera, 0);
-  if (n.size() == 2) return automaticCamera(scene, radians(n[0]), radians(n[1]), aspect, fov);
-  if (n.size() == 6) return {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, fov};
-  throw Error("--camera", "needs 2 or 6 numbers", "AZIMUTH,ELEVATION or X,Y,Z,TX,TY,TZ");
-}
-
 }  // namespace
-
-float groundHeight(const Plant& plant) {
-  constexpr float kMostBelow = 0.25f;  // share of the height
-  const Bounds box = bounds(plant);
-  const bool from_zero = plant.origin == glm::dvec3(0.0) && box.min.y <= 0.0f &&
-                         -box.min.y < kMostBelow * box.size().y;
-  return from_zero ? 0.0f : box.min.y;
-}
 
 void checkOutput(const std::string& path, const std::vector<std::string>& extensions) {
   if (std::find(extensions.begin(), extensions.end(), std::filesystem::path(path).extension()) ==
@@ -123,13 +102,15 @@ std::optional<CrownLight> lightOfFile(const Plant& plant) {
 
 void runRender(const RenderCommand& command) {
   View view;
-  std::tie(view.width, view.height) = parseSize(command.size);
+  std::tie(view.width, view.height) = command.sizeInPixels();
   view.terms = parseTerms(command);
-  const std::vector<float> sun = parseNumbers("--sun", command.sun, 2);
-  view.sun_azimuth = radians(sun[0]);
-  view.sun_elevation = radians(sun[1]);
-  if (!(command.fov_deg > 0.0 && command.fov_deg < 170.0))
-    throw Error("--fov", "must lie between 0 and 170 degrees", "34 is usual");
+  view.daylight = parseDaylight(command.daylight);
+  view.exposure = parseExposure(command.exposure);
+  view.bloom = parseBloom(command.exposure);
+  if (command.bands < 2 || command.bands > 7)
+    throw Error("--bands", fmt::format("{} is out of range", command.bands), "choose 2 to 7");
+  view.sky_bands = command.bands;
+  command.checkCamera();
   if (!command.background.empty()) {
     const auto rgb = parseNumbers("--background", command.background, 3);
     for (const float c : rgb)
@@ -141,8 +122,11 @@ void runRender(const RenderCommand& command) {
   if (command.shadow_map < 16)
     throw Error("--shadow-map", "must be at least 16 pixels", "2048 is usual");
   view.shadow_map_size = command.shadow_map;
+  if (view.terms.ambient_source == AmbientSource::kTransfer)
+    throw Error("--light", "the plant carries no transfer vectors", "use standard or expressive");
   const DensityOptions bake_options = command.bake.checked();
-  checkOutput(command.output, {".png"});
+  checkOutput(command.output, {".png", ".exr"});
+  view.hdr = std::filesystem::path(command.output).extension() == ".exr";
 
   Progress progress("render");
   progress.show("device");
@@ -161,21 +145,17 @@ void runRender(const RenderCommand& command) {
     light = std::move(bake.light);
     bake_seconds = bake.report.seconds_total;
   }
-  // A baked file has no leaf normals any more: they are found again from its triangles.
-  if (view.terms.normal == NormalSource::kLeaf)
-    for (Mesh& mesh : plant.meshes)
-      if (mesh.kind == PartKind::kFoliage && !mesh.ambient.empty())
-        mesh.normals = angleWeightedNormals(mesh.positions, mesh.indices);
-  Scene scene;
-  scene.ground = !command.no_ground;
-  scene.ground_height = groundHeight(plant);
-  scene.items.push_back({&plant, light ? &*light : nullptr});
+  if (view.terms.normal == NormalSource::kLeaf) restoreLeafNormals(plant);
+  const Scene scene = command.sceneOf(plant, light ? &*light : nullptr);
   view.camera =
-      parseCamera(command, scene, static_cast<float>(view.width) / static_cast<float>(view.height));
+      command.cameraFor(scene, static_cast<float>(view.width) / static_cast<float>(view.height));
   progress.show("drawing");
   renderer.setScene(scene);
   const Frame frame = renderer.render(view);
-  writePng(frame.image, command.output);
+  if (view.hdr)
+    writeExr(frame.hdr, command.output);
+  else
+    writePng(frame.image, command.output);
   progress.show("done");
   if (command.json)
     fmt::print("{}\n",
@@ -186,12 +166,14 @@ void runRender(const RenderCommand& command) {
                                       {"pack_ms", frame.times.pack_ms},
                                       {"shadow_ms", frame.times.shadow_ms},
                                       {"color_ms", frame.times.color_ms},
+                                      {"tone_ms", frame.times.tone_ms},
+                                      {"average_kcd_m2", frame.average_luminance},
                                       {"validation_messages", renderer.validationMessages()}}
                    .dump(2));
   else
-    fmt::print("{}: {}x{}, {} light, on {}; shadow {:.1f} ms, colour {:.1f} ms\n", command.output,
-               view.width, view.height, command.light, renderer.deviceName(), frame.times.shadow_ms,
-               frame.times.color_ms);
+    fmt::print("{}: {}x{}, {} light, on {}; shadow {:.1f} ms, colour {:.1f} ms, tone {:.1f} ms\n",
+               command.output, view.width, view.height, command.light, renderer.deviceName(),
+               frame.times.shadow_ms, frame.times.color_ms, frame.times.tone_ms);
 }
 
 }  // namespace verdure::app

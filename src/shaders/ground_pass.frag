@@ -1,10 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame_set.glsl"
+#include "shared/ground.h"
 #include "shared/illumination.h"
-#include "shared/sky.h"
-#include "sun_visibility.glsl"
 #include "terms.glsl"
+#include "dome.glsl"
+#include "sun_visibility.glsl"
 
 layout(location = 0) in vec3 position;
 layout(location = 0) out vec4 out_color;
@@ -23,18 +24,18 @@ vec3 grazingTexture(vec2 uv) {
   return 0.25 * sum;
 }
 
-/// Grass at its own size, and again a little larger and turned, where the repetition of one hides
-/// that of the other; noise at three sizes makes patches, lighter, darker and drier.
 vec3 grass(vec2 p) {
-  vec2 q = p / frame.ground.w;
-  vec3 blades = mix(grazingTexture(q),
-                    grazingTexture(mat2(0.8, 0.6, -0.6, 0.8) * q * 0.618), 0.35);
-  float fine = texture(ground_noise, q * 0.211).r;
-  float middle = texture(ground_noise, mat2(0.28, -0.96, 0.96, 0.28) * q * 0.0371).r;
-  float broad = texture(ground_noise, mat2(0.6, 0.8, -0.8, 0.6) * q * 0.0059).r;
-  float tone = 0.5 * fine + 0.3 * middle + 0.2 * broad;
-  vec3 dry = vec3(1.2, 1.03, 0.95);
-  return blades * mix(0.55, 1.45, tone) * mix(vec3(1.0), dry, middle * broad);
+  GroundLookup at = groundLookup(p, frame.ground.w);
+  return groundColor(grazingTexture(at.blades), grazingTexture(at.turned_blades),
+                     texture(ground_noise, at.fine).r, texture(ground_noise, at.middle).r,
+                     texture(ground_noise, at.broad).r);
+}
+
+/// Light on the ground from the sky and from what stands on it; open where the map ends.
+vec3 mappedLight(vec3 p) {
+  vec2 at = (p.xz - frame.ground_map.xy) * frame.ground_map.z;
+  vec2 edge = smoothstep(vec2(0.0), vec2(0.1), 0.5 - abs(at - 0.5));
+  return mix(frame.open_sky.rgb, textureLod(ground_light, at, 0.0).rgb, edge.x * edge.y);
 }
 
 void main() {
@@ -43,9 +44,13 @@ void main() {
   vec3 n = vec3(0.0, 1.0, 0.0);
   vec3 color = kTextures ? grass(position.xz) : vec3(0.18);
   float visibility = kShadow ? sunVisibility(position, n) : 1.0;
-  vec3 lit = illumination(frame.ambient_color.rgb, color * (kAmbient ? 1.0 : 0.0),
-                          frame.sun_color.rgb, visibility, color,
-                          kDiffuse ? diffuseFactor(n, frame.to_sun.xyz) : 0.0, 0.0, 0.0);
-  vec3 horizon = skyColor(-to_eye / distance, frame.sky_horizon.rgb, frame.sky_zenith.rgb);
-  out_color = vec4(mix(lit, horizon, hazeShare(distance, frame.ground.z)), 1.0);
+  vec3 ambient = kAmbientSource == kTransfer && frame.ground_map.z > 0.0 ? mappedLight(position)
+                                                                         : frame.open_sky.rgb;
+  vec3 lit = illumination(kAmbient ? ambient * color : vec3(0.0), frame.sun_light.rgb, visibility,
+                          kDiffuse ? color * diffuseFactor(n, frame.to_sun.xyz) : vec3(0.0), 0.0,
+                          0.0);
+  // Alpha 0 is the background, where there is one instead of the sky.
+  float haze = hazeShare(distance, frame.ground.z);
+  vec3 far = kBackground ? vec3(0.0) : domeLuminance(-to_eye / distance);
+  out_color = vec4(storable(mix(lit, far, haze)), kBackground ? 1.0 - haze : 1.0);
 }

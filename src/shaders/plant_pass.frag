@@ -2,8 +2,11 @@
 #extension GL_GOOGLE_include_directive : require
 #include "frame_set.glsl"
 #include "shared/illumination.h"
-#include "sun_visibility.glsl"
+#include "shared/leaf.h"
+#include "shared/normal_map.h"
+#include "shared/sh.h"
 #include "terms.glsl"
+#include "sun_visibility.glsl"
 
 layout(set = 1, binding = 0) uniform sampler2D base_color;
 layout(set = 1, binding = 1) uniform sampler2D normal_map;
@@ -15,6 +18,9 @@ layout(location = 2) in vec2 uv;
 /// Where a covered sample lies: at the edge of a small leaf the pixel's centre is outside, and its
 /// texture coordinates lie beyond the leaf, where alpha is 0.
 layout(location = 3) centroid in vec2 covered_uv;
+/// Irradiance / pi on the side of the vertex normal and on the other, from transfer vectors.
+layout(location = 4) in vec3 front_light;
+layout(location = 5) in vec3 back_light;
 layout(location = 0) out vec4 out_color;
 
 /// Which of the four samples an alpha-cut surface covers. Written here rather than left to the
@@ -26,21 +32,6 @@ int coverageMask(float alpha, float cutoff) {
   float threshold = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
   int count = int(floor(coverage * 4.0 + threshold));
   return (1 << min(count, 4)) - 1;
-}
-
-/// Normal map without vertex tangents: the frame follows from the screen derivatives of position
-/// and texture coordinates (Schueler, "Followup: Normal Mapping Without Precomputed Tangents",
-/// 2013). glTF's maps have green up, against its v.
-vec3 mappedNormal(vec3 n, vec3 p_x, vec3 p_y, vec2 uv_x, vec2 uv_y) {
-  vec3 x_perpendicular = cross(p_y, n), y_perpendicular = cross(n, p_x);
-  float handedness = dot(p_x, x_perpendicular) < 0.0 ? -1.0 : 1.0;
-  vec3 t = (x_perpendicular * uv_x.x + y_perpendicular * uv_y.x) * handedness;
-  vec3 b = (x_perpendicular * uv_x.y + y_perpendicular * uv_y.y) * -handedness;
-  float longest = max(dot(t, t), dot(b, b));
-  if (longest <= 0.0) return n;
-  vec3 m = textureGrad(normal_map, uv, uv_x, uv_y).xyz * (255.0 / 127.0) - (128.0 / 127.0);
-  m.xy *= draw.surface.y;
-  return normalize((t * m.x + b * m.y) * inversesqrt(longest) + n * max(m.z, 0.05));
 }
 
 void main() {
@@ -62,19 +53,41 @@ void main() {
 
   vec3 n = normalize(in_normal.xyz);
   if (kFlipNormal && !gl_FrontFacing) n = -n;
-  if (kNormalMap && kTextures) n = mappedNormal(n, p_x, p_y, uv_x, uv_y);
+  if (kNormalMap && kTextures) {
+    vec3 texel_n = textureGrad(normal_map, uv, uv_x, uv_y).xyz;
+    n = mappedNormal(n, p_x, p_y, uv_x, uv_y, texel_n, draw.surface.y);
+  }
   vec3 l = frame.to_sun.xyz;
   vec3 v = normalize(frame.eye.xyz - position);
 
+  // The light on the side that is seen, and on the other.
+  vec3 near = vec3(0.0), beyond = vec3(0.0);
+  if (kAmbient) {
+    if (kAmbientSource == kTransfer) {
+      near = gl_FrontFacing ? front_light : back_light;
+      beyond = gl_FrontFacing ? back_light : front_light;
+    } else if (kAmbientSource == kConstant) {
+      near = beyond = frame.open_sky.rgb;
+    } else {
+      float k_a = kAmbientSource == kBaked ? in_normal.w : 1.0;
+      near = shIrradiance(n, frame.open_light) * k_a;
+      if (kTransmission) beyond = shIrradiance(-n, frame.open_light) * k_a;
+    }
+  }
+  vec3 ambient = near * color;
+  vec3 diffuse = kDiffuse ? color * diffuseFactor(n, l) : vec3(0.0);
+  if (kTransmission) {
+    vec3 k_t = leafTransmittance(color);
+    ambient += beyond * k_t;
+    if (kDiffuse) diffuse += k_t * diffuseFactor(-n, l);
+  }
+  float specular = kSpecular ? specularFactor(n, l, v, draw.surface.w) : 0.0;
   float visibility = 1.0;
-  if (kShadow) {
+  if (kShadow && (diffuse != vec3(0.0) || specular > 0.0)) {
     vec3 face = cross(p_x, p_y);
     visibility = sunVisibility(position, dot(face, face) > 0.0 ? normalize(face) : n);
   }
-  float k_a = kAmbient ? (kBakedAmbient ? in_normal.w : 1.0) : 0.0;
-  float diffuse = kDiffuse ? diffuseFactor(n, l) : 0.0;
-  float specular = kSpecular ? specularFactor(n, l, v, draw.surface.w) : 0.0;
-  out_color = vec4(illumination(frame.ambient_color.rgb, color * k_a, frame.sun_color.rgb,
-                                visibility, color, diffuse, draw.surface.z, specular),
-                   1.0);
+  vec3 lit = illumination(ambient, frame.sun_light.rgb, visibility, diffuse, draw.surface.z,
+                          specular);
+  out_color = vec4(min(lit, vec3(65000.0)), 1.0);
 }

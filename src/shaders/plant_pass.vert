@@ -8,10 +8,14 @@
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 encoded_normal;
 layout(location = 2) in vec2 uv;
+layout(location = 6) in vec3 front_light;
+layout(location = 7) in vec3 back_light;
 layout(location = 0) out vec3 out_position;
 layout(location = 1) out vec4 out_normal;  // w = ambient coefficient
 layout(location = 2) out vec2 out_uv;
 layout(location = 3) centroid out vec2 out_covered_uv;
+layout(location = 4) out vec3 out_front_light;
+layout(location = 5) out vec3 out_back_light;
 
 void main() {
   vec4 decoded = decodeNormal(encoded_normal);
@@ -19,5 +23,7 @@ void main() {
   out_normal = vec4(normalize(worldNormal(decoded.xyz, kFlipNormal)), decoded.w);
   out_uv = uv;
   out_covered_uv = uv;
+  out_front_light = front_light;
+  out_back_light = back_light;
   gl_Position = frame.clip_from_world * vec4(out_position, 1.0);
 }

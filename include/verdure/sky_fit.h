@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "verdure/harmonics.h"
@@ -61,6 +62,10 @@ class SkyFit {
   double air_scale_ = 0.0, air_offset_ = 0.0;
   std::vector<float> coefficients_;
 };
+
+/// The fit as a C99 header without dependencies: its coefficients and a function that evaluates,
+/// turns and filters (5.5) the weights.
+std::string skyFitHeader(const SkyFit& fit);
 
 /// Errors of a fit against plain projection, as parts of L_min, the smallest weight c_00 over the
 /// range and the channels; the worst channel counts. Index N - 1: of the first N bands.

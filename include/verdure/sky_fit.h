@@ -21,6 +21,9 @@ namespace verdure {
 /// horizon. Called from several threads.
 using SkyModel = std::function<std::shared_ptr<const Sky>(float sun_zenith, float turbidity)>;
 
+/// preethamDaylight()'s sky, but with the colours outside of the gamut that it clamps: blue, a
+/// little below 0 near the horizon, below turbidity 3 while the sun sets. Clamping there makes a
+/// kink that polynomials cannot follow; it changes the sum (5.3) by 0.3 % of L_min at most.
 SkyModel preethamModel();
 
 struct SkyFitOptions {

@@ -122,8 +122,8 @@ void runSky(const SkyCommand& command);
 struct SkyReport {
   std::string folder = "figures";
   int bands = 7;
-  glm::vec3 to_sun{0.0f, 0.17364818f, 0.98480775f};  ///< 10 degrees high
-  float turbidity = 4.0f;
+  glm::vec3 to_sun{0.0f, 0.70710678f, 0.70710678f};
+  float turbidity = 3.0f;
 };
 void writeSkyReport(const SkyReport& report);
 

@@ -88,11 +88,24 @@ float gridPoint(float from, float to, int k, int steps) {
   return from + (to - from) * static_cast<float>(k) / static_cast<float>(steps);
 }
 
+/// Preetham's sky with its colours outside of the gamut.
+class UnclampedSky final : public Sky {
+ public:
+  UnclampedSky(float sun_zenith, float turbidity)
+      : formula_(preethamFormula(turbidity, {0.0f, std::cos(sun_zenith), std::sin(sun_zenith)})) {}
+  glm::vec3 luminance(const glm::vec3& direction) const override {
+    return direction.y < 0.0f ? glm::vec3(0.0f) : shared::skyColorUnclamped(direction, formula_);
+  }
+
+ private:
+  shared::SkyFormula formula_;
+};
+
 }  // namespace
 
 SkyModel preethamModel() {
   return [](float sun_zenith, float turbidity) {
-    return preethamDaylight(turbidity, {0.0f, std::cos(sun_zenith), std::sin(sun_zenith)}).sky;
+    return std::make_shared<UnclampedSky>(sun_zenith, turbidity);
   };
 }
 

@@ -3,8 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+#include "base/files.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "scratch.h"
 #include "sky_checks.h"
 #include "verdure/error.h"
 
@@ -25,7 +31,7 @@ double sumOfErrors(const Harmonics& a, const Harmonics& b) {
 }
 
 TEST(SkyFit, KeepsItsErrorBound) {
-  const SkyFitErrors errors = measureSkyFit(preethamFit(), preethamModel(), 30, 14);
+  const SkyFitErrors errors = measureSkyFit(preethamFit(), preethamModel(), 90, 7);
   EXPECT_LT(errors.maximal[6], 5e-4);
   EXPECT_LT(errors.mean[6], 2.5e-4);
   for (std::size_t n = 1; n < 7; ++n) {
@@ -49,6 +55,15 @@ TEST(SkyFit, IsTheProjectionAnywhere) {
     const Harmonics truth = projectSky(*preethamDaylight(turbidity, sun).sky, 7);
     EXPECT_LT(sumOfErrors(preethamFit().at(sun, turbidity), truth), 1.5e-3) << i;
   }
+}
+
+// The model's own colours against those that a picture shows.
+TEST(SkyFit, IsNearTheClampedSkyWhereTheGamutEnds) {
+  const glm::vec3 sun = fromAngles(90.0, 0.0);
+  const Harmonics shown = projectSky(*preethamDaylight(2.5f, sun).sky, 7);
+  const double error = sumOfErrors(preethamFit().at(sun, 2.5f), shown);
+  EXPECT_GT(error, 1e-3);
+  EXPECT_LT(error, 4e-3 * 1.825);
 }
 
 TEST(SkyFit, DimsInTwilightAsTheModel) {
@@ -94,6 +109,45 @@ TEST(SkyFit, DoesNotDependOnThreads) {
   setThreadCount(0);
   EXPECT_TRUE(
       std::equal(all.coefficients().begin(), all.coefficients().end(), one.coefficients().begin()));
+}
+
+// The header, compiled as C and run.
+TEST(SkyFitHeader, IsTheFit) {
+  SkyFitOptions options;
+  options.bands = 4;
+  const SkyFit fit(preethamModel(), options);
+  const auto folder = scratchFolder("header");
+  writeFile(folder / "sky.h", skyFitHeader(fit));
+  writeFile(folder / "main.c", std::string(R"(
+#include <stdio.h>
+#include "sky.h"
+int main(void) {
+  float w[VERDURE_SKY_BANDS * VERDURE_SKY_BANDS][3];
+  int filter, i;
+  for (filter = 0; filter < 2; ++filter) {
+    verdure_sky_weights(0.9f, 2.2f, 3.3f, filter, w);
+    for (i = 0; i < VERDURE_SKY_BANDS * VERDURE_SKY_BANDS; ++i)
+      printf("%.9g %.9g %.9g\n", (double)w[i][0], (double)w[i][1], (double)w[i][2]);
+  }
+  return 0;
+}
+)"));
+  const std::string compile = fmt::format(
+      "{} -std=c99 -pedantic -Wall -Wextra -Wconversion -Werror -o {}/main {}/main.c -lm && "
+      "{}/main "
+      "> {}/out",
+      VERDURE_C_COMPILER, folder.string(), folder.string(), folder.string(), folder.string());
+  ASSERT_EQ(std::system(compile.c_str()), 0);
+  std::ifstream out(folder / "out");
+  const Harmonics plain = fit.at(
+      {std::sin(0.9f) * std::sin(2.2f), std::cos(0.9f), std::sin(0.9f) * std::cos(2.2f)}, 3.3f);
+  for (const Harmonics& h : {plain, withoutRinging(plain)})
+    for (std::size_t i = 0; i < 16; ++i)
+      for (int c = 0; c < 3; ++c) {
+        float got = NAN;
+        out >> got;
+        EXPECT_NEAR(got, h.weights[i][c], 2e-5f * h.weights[0][c]) << i;
+      }
 }
 
 TEST(SkyFit, RefusesWhatIsOutOfRange) {

@@ -126,6 +126,35 @@ struct CompareCommand {
 /// Returns the exit code: 1 if the first metric is worse than the threshold.
 int runCompare(const CompareCommand& command);
 
+struct SkyCommand {
+  float turbidity = 3.0f;
+  std::string sun;          ///< "azimuth,elevation", degrees
+  std::string date, place;  ///< ISO 8601; "latitude,longitude"
+  std::string model = "preetham";
+  std::optional<float> illuminance;  ///< of a CIE sky, klx
+  float turn_deg = 0.0f;             ///< of a panorama
+  float scale = 1.0f;                ///< of a panorama, kcd/m^2 of its value 1
+  int bands = 7;
+  bool filter = false;
+  std::string image;
+  std::string dome = "fisheye";
+  int size = 512;
+  std::string emit_header;
+  std::string report;  ///< folder
+  bool json = false;
+};
+void runSky(const SkyCommand& command);
+
+/// Figures 5.3 to 5.5 of Habel 2009, with a page that shows them and the errors as JSON; the sun
+/// and the turbidity are those of Figure 5.5.
+struct SkyReport {
+  std::string folder = "figures";
+  int bands = 7;
+  glm::vec3 to_sun{0.0f, 0.70710678f, 0.70710678f};
+  float turbidity = 3.0f;
+};
+void writeSkyReport(const SkyReport& report);
+
 struct FiguresCommand {
   std::string output = "figures";
   std::string species = "black-oak";

@@ -245,6 +245,32 @@ int run(int argc, char** argv) {
                           "PSNR of HDR images: the peak (default: the reference's largest value)");
   compare_app->add_flag("--json", compare.json, "Print JSON");
 
+  SkyCommand sky;
+  CLI::App* sky_app = app.add_subcommand("sky", "Say what a sky gives; draw, project and fit it");
+  sky_app->add_option("--turbidity", sky.turbidity, "Preetham's, 2 (clear) to 10 (thick haze)")
+      ->capture_default_str();
+  sky_app->add_option("--sun", sky.sun,
+                      "AZIMUTH,ELEVATION, degrees (azimuth 0: south, 90: east; default: 0,45)");
+  sky_app->add_option("--date", sky.date, "Time instead of --sun: 2026-06-21T12:30Z, or +02:00");
+  sky_app->add_option("--place", sky.place, "LATITUDE,LONGITUDE for --date, degrees");
+  sky_app->add_option("--model", sky.model, "preetham, cie:1 to cie:15, or a panorama .hdr .exr")
+      ->capture_default_str();
+  sky_app->add_option("--illuminance", sky.illuminance,
+                      "klx of a CIE sky on level ground (default: from the sun's elevation)");
+  sky_app->add_option("--turn", sky.turn_deg, "Turn of a panorama, degrees from south to east")
+      ->capture_default_str();
+  sky_app->add_option("--scale", sky.scale, "kcd/m^2 of a panorama's value 1")
+      ->capture_default_str();
+  sky_app->add_option("--bands", sky.bands, "Bands of the spherical harmonics, 1 to 7")
+      ->capture_default_str();
+  sky_app->add_flag("--filter", sky.filter, "Filter the printed weights against ringing");
+  sky_app->add_option("--image", sky.image, "Picture of the sky to write: .png or .exr");
+  sky_app->add_option("--dome", sky.dome, "fisheye or panorama")->capture_default_str();
+  sky_app->add_option("--size", sky.size, "Height of the picture, pixels")->capture_default_str();
+  sky_app->add_option("--emit-header", sky.emit_header, "C header with the fit to write");
+  sky_app->add_option("--report", sky.report, "Folder for the fit's errors and pictures");
+  sky_app->add_flag("--json", sky.json, "Print JSON, with the harmonics' weights");
+
   FiguresCommand figures;
   CLI::App* figures_app = app.add_subcommand("figures", "Reproduce the figures of a paper");
   CLI::App* luft_app = figures_app->add_subcommand("luft", "Luft, Balzer, Deussen 2007: 1 to 6");
@@ -253,6 +279,10 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   luft_app->add_option("--size", figures.size, "WxH of each picture")->capture_default_str();
   addDeviceOptions(*luft_app, figures.device);
+  SkyReport sky_figures;
+  CLI::App* habel_app = figures_app->add_subcommand("sky", "Habel 2009: 5.3 to 5.5");
+  habel_app->add_option("-o,--output", sky_figures.folder, "Folder to write")
+      ->capture_default_str();
 
   for (int i = 1; i < argc; ++i)
     if (*argv[i] == '\0')
@@ -268,9 +298,9 @@ int run(int argc, char** argv) {
   }
   if (app.get_subcommands().empty())
     throw Error("command line", "no command is named",
-                "use grow, inspect, bake, render, reference, compare or figures; see " + help);
-  if (*figures_app && !*luft_app)
-    throw Error("figures", "no paper is named", "use luft; see verdure figures --help");
+                "use grow, inspect, bake, render, reference, compare, sky or figures; see " + help);
+  if (*figures_app && figures_app->get_subcommands().empty())
+    throw Error("figures", "no paper is named", "use luft or sky; see verdure figures --help");
   for (const CLI::Option* option : render_app->get_options())
     if (option->get_group() == kBakeGroup && option->count() > 0) render.bake_again = true;
   setThreadCount(threads);
@@ -280,7 +310,9 @@ int run(int argc, char** argv) {
   if (*render_app) runRender(render);
   if (*reference_app) runReference(reference);
   if (*compare_app) return runCompare(compare);
+  if (*sky_app) runSky(sky);
   if (*luft_app) runLuftFigures(figures);
+  if (*habel_app) writeSkyReport(sky_figures);
   return 0;
 }
 

@@ -11,6 +11,7 @@
 #include "sky/harmonic_basis.h"
 #include "sky/preetham.h"
 #include "sky/projection.h"
+#include "sky/sky_fit_coordinates.h"
 #include "verdure/error.h"
 
 namespace verdure {
@@ -20,8 +21,6 @@ constexpr double kPi = glm::pi<double>();
 constexpr std::size_t kMostDegree = 31;
 constexpr std::size_t kMostOutputs = 3 * kMaxBands * (kMaxBands + 1) / 2;  // 84
 constexpr std::size_t kMostStride = (kMostOutputs + kFitLanes - 1) / kFitLanes * kFitLanes;
-constexpr double kTurbidityPole = 1.66;
-constexpr double kSunStretch = 0.03;
 /// Rows of the fit's quadrature; see Sky::rows().
 constexpr int kRows = 128;
 
@@ -84,32 +83,29 @@ void checkOptions(const SkyFitOptions& o) {
                 "the paper uses 2.5 to 6");
 }
 
-/// The sun's angle as the polynomials see it, in [-1, 1]: a little stretched towards the zenith,
-/// because the model's luminance has a pole 15 degrees beyond it. (By trial.)
-template <class T>
-T sunCoordinate(T zenith) {
-  const T x = zenith * static_cast<T>(4.0 / kPi) - T(1);
-  return x + static_cast<T>(kSunStretch) * (T(1) - x * x);
-}
-
-/// Turbidity as the polynomials see it, before the range is mapped to [-1, 1]. The model's zenith
-/// has a pole near turbidity 1.66, outside of the range but near enough to spoil a polynomial of
-/// turbidity itself; of the logarithm of the distance from there everything is smooth.
-template <class T>
-T airLogarithm(T turbidity) {
-  return std::log(turbidity - static_cast<T>(kTurbidityPole));
-}
-
 /// The point k of an even grid over a range.
 float gridPoint(float from, float to, int k, int steps) {
   return from + (to - from) * static_cast<float>(k) / static_cast<float>(steps);
 }
 
+/// Preetham's sky with its colours outside of the gamut.
+class UnclampedSky final : public Sky {
+ public:
+  UnclampedSky(float sun_zenith, float turbidity)
+      : formula_(preethamFormula(turbidity, {0.0f, std::cos(sun_zenith), std::sin(sun_zenith)})) {}
+  glm::vec3 luminance(const glm::vec3& direction) const override {
+    return direction.y < 0.0f ? glm::vec3(0.0f) : shared::skyColorUnclamped(direction, formula_);
+  }
+
+ private:
+  shared::SkyFormula formula_;
+};
+
 }  // namespace
 
 SkyModel preethamModel() {
   return [](float sun_zenith, float turbidity) {
-    return preethamDaylight(turbidity, {0.0f, std::cos(sun_zenith), std::sin(sun_zenith)}).sky;
+    return std::make_shared<UnclampedSky>(sun_zenith, turbidity);
   };
 }
 
@@ -126,11 +122,12 @@ SkyFit::SkyFit(const SkyModel& model, const SkyFitOptions& options) : options_(o
     sun_coordinates.push_back(sunCoordinate(zeniths.back()));
   }
   const double low = double{options.turbidity_min}, high = double{options.turbidity_max};
-  air_scale_ = 2.0 / (airLogarithm(high) - airLogarithm(low));
-  air_offset_ = -1.0 - air_scale_ * airLogarithm(low);
+  const AirCoordinate air(options);
+  air_scale_ = air.scale;
+  air_offset_ = air.offset;
   for (std::size_t k = 0; k < airs; ++k) {
     turbidities.push_back(0.5 * (low + high) + 0.5 * (high - low) * samplePoint(k, airs));
-    air_coordinates.push_back(air_scale_ * airLogarithm(turbidities.back()) + air_offset_);
+    air_coordinates.push_back(air(turbidities.back()));
   }
   const SkyProjection projection(options.bands, kRows);
   using Sample = std::array<double, kMostOutputs>;
@@ -171,9 +168,7 @@ Harmonics SkyFit::atZenithAngle(float sun_zenith, float turbidity) const {
   std::array<float, kMostDegree + 1> x, y;
   chebyshev(sunCoordinate(std::clamp(sun_zenith, 0.0f, static_cast<float>(0.5 * kPi))),
             options_.sun_degree, x.data());
-  chebyshev(
-      static_cast<float>(air_scale_) * airLogarithm(turbidity) + static_cast<float>(air_offset_),
-      options_.turbidity_degree, y.data());
+  chebyshev(AirCoordinate(air_scale_, air_offset_)(turbidity), options_.turbidity_degree, y.data());
   std::array<float, kMostStride> out;
   sumPolynomials(x.data(), static_cast<std::size_t>(options_.sun_degree + 1), y.data(),
                  static_cast<std::size_t>(options_.turbidity_degree + 1), coefficients_.data(),

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <optional>
@@ -20,9 +21,9 @@
 namespace verdure {
 namespace {
 
-constexpr std::size_t kOrigins = 16384;
+constexpr std::size_t kOrigins = 4096;
 constexpr std::size_t kRaysEach = 64;
-constexpr int kRounds = 7;
+constexpr int kRounds = 5;
 
 /// Ambient occlusion's rays: from points just off vertices, a cosine hemisphere each.
 std::vector<Ray> occlusionRays(const Plant& plant, const RayScene& scene) {
@@ -233,7 +234,7 @@ void run(const std::string& species, LeafForm form) {
   // A share of the vertices, and what it makes for all.
   std::vector<VertexId> some;
   const std::vector<VertexId> all = allVertices(plant);
-  for (std::size_t i = 0; i < all.size(); i += 10) some.push_back(all[i]);
+  for (std::size_t i = 0; i < all.size(); i += 1 + all.size() / 4000) some.push_back(all[i]);
   for (const int bounces : {0, 3}) {
     RayOptions o;
     o.bounces = bounces;
@@ -244,19 +245,22 @@ void run(const std::string& species, LeafForm form) {
     fmt::print("ambient, 256 rays, {} bounces: {:.1f} s for 200,000 vertices\n", bounces,
                per_vertex * 2e5);
   }
+  // Whole plants only: few rays, and what it makes for all.
   TransferOptions t;
-  t.rays.rays = 32;
+  t.rays.rays = 4;
   t.rays.ground_height = 0.0f;
+  t.ground_size = 0;
   timer.lap();
   bakeTransfer(plant, t);
   fmt::print("transfer, 5 bands, 256 rays each side, 3 bounces: {:.1f} s for 200,000 vertices\n",
-             timer.lap() * 8.0 * 2e5 / static_cast<double>(all.size()));
+             timer.lap() * 64.0 * 2e5 / static_cast<double>(all.size()));
 }
 
 }  // namespace
 }  // namespace verdure
 
 int main(int argc, char** argv) {
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
   const std::string species = argc > 1 ? argv[1] : "black-oak";
   verdure::run(species, verdure::LeafForm::kMesh);
   verdure::run(species, verdure::LeafForm::kCard);

@@ -172,6 +172,7 @@ int run(int argc, char** argv) {
   bake_app
       ->add_option("--transfer", bake.rays.transfer_bands,
                    "Trace transfer vectors of so many bands, 2 to 7, into OUTPUT's .transfer")
+      ->check(CLI::Range(2, 7))
       ->group(kRayGroup);
   bake_app->add_option("--rays", bake.rays.rays, "Rays of each vertex and side of a leaf")
       ->group(kRayGroup)

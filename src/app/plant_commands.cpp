@@ -278,6 +278,9 @@ DensityOptions BakeParameters::checked() const {
 void runBake(const BakeCommand& command) {
   checkOutput(command.output, {".glb", ".gltf"});
   if (!command.report.empty()) checkWritable(command.report);
+  if (command.rays.ambient != "density" && command.rays.ambient != "ray-traced")
+    throw Error("--ambient", fmt::format("'{}' is unknown", command.rays.ambient),
+                "use density or ray-traced");
   if (command.rays.transfer_bands != 0) checkWritable(transferPath(command.output));
   if (fs::path(command.report).lexically_normal() == fs::path(command.output).lexically_normal())
     throw Error("--report", "names the output file", "choose another file");

@@ -30,9 +30,6 @@ std::optional<RayReport> traceLight(const BakeCommand& command, const Plant& pla
                                     CrownLight& light) {
   const RayParameters& parameters = command.rays;
   const bool ambient = parameters.ambient == "ray-traced", bent = command.bake.normals == "bent";
-  if (!ambient && parameters.ambient != "density")
-    throw Error("--ambient", fmt::format("'{}' is unknown", parameters.ambient),
-                "use density or ray-traced");
   if (!ambient && !bent && parameters.transfer_bands == 0) return std::nullopt;
   Progress progress("bake");
   const char* step = "";

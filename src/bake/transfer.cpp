@@ -16,10 +16,12 @@ namespace {
 
 constexpr int kMostBounceBands = 3;
 
-/// The sums of one vertex and side.
+/// The sums of one vertex and side: light that came straight, without colour, and bounced light of
+/// each channel.
 struct Sums {
-  std::array<glm::vec3, kMaxBands * kMaxBands> all{};
-  std::array<glm::vec3, kMostBounceBands * kMostBounceBands> bounced{};
+  using Values = std::array<float, kMaxBands * kMaxBands>;
+  Values direct{};
+  std::array<Values, 3> bounced{};
 };
 
 void checkOptions(const TransferOptions& o) {
@@ -137,10 +139,15 @@ class Baker {
                   o.ground_height.has_value(), random,
                   [&](const glm::vec3& direction, const glm::vec3& throughput, int bounced) {
                     harmonicsAt(direction, options_.bands, values.data());
-                    for (std::size_t i = 0; i < count_; ++i) sums.all[i] += values[i] * throughput;
-                    if (bounced == 0) return;
-                    for (std::size_t i = 0; i < bounce_count_; ++i)
-                      sums.bounced[i] += values[i] * throughput;
+                    if (bounced == 0) {  // throughput is 1
+                      for (std::size_t i = 0; i < count_; ++i) sums.direct[i] += values[i];
+                      return;
+                    }
+                    for (std::size_t c = 0; c < 3; ++c) {
+                      const float share = throughput[static_cast<int>(c)];
+                      for (std::size_t i = 0; i < count_; ++i)
+                        sums.bounced[c][i] += values[i] * share;
+                    }
                   });
     }
     return sums;
@@ -149,14 +156,14 @@ class Baker {
   void store(const Sums& sums, std::size_t vertex, std::vector<std::uint16_t>& all,
              std::vector<std::uint16_t>& bounced) const {
     const float scale = 1.0f / static_cast<float>(options_.rays.rays);
-    for (std::size_t i = 0; i < count_; ++i)
-      for (int c = 0; c < 3; ++c)
-        all[(vertex * count_ + i) * 3 + static_cast<std::size_t>(c)] =
-            glm::packHalf1x16(sums.all[i][c] * scale);
-    for (std::size_t i = 0; i < bounce_count_; ++i)
-      for (int c = 0; c < 3; ++c)
-        bounced[(vertex * bounce_count_ + i) * 3 + static_cast<std::size_t>(c)] =
-            glm::packHalf1x16(sums.bounced[i][c] * scale);
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t i = 0; i < count_; ++i)
+        all[(vertex * count_ + i) * 3 + c] =
+            glm::packHalf1x16((sums.direct[i] + sums.bounced[c][i]) * scale);
+      for (std::size_t i = 0; i < bounce_count_; ++i)
+        bounced[(vertex * bounce_count_ + i) * 3 + c] =
+            glm::packHalf1x16(sums.bounced[c][i] * scale);
+    }
   }
 
   const Plant& plant_;

@@ -20,7 +20,12 @@ class CutTable {
   /// `cutoff` in (0, 1]: alpha below it is cut.
   CutTable(const Texture& texture, float cutoff);
 
-  bool transparentAt(const glm::vec2& uv) const { return grid_.alpha(uv) < cutoff_; }
+  bool transparentAt(const glm::vec2& uv) const {
+    const TexelGrid::Cell at = grid_.cellAt(uv);
+    // Clamped at the low edge, its texel is one of the first cell's.
+    const Cut kind = cells_[cellIndex(at.x0, at.y0)];
+    return kind == Cut::kMixed ? grid_.alpha(at) < cutoff_ : kind == Cut::kTransparent;
+  }
   /// Of the triangle with these texture coordinates; kMixed wherever it is not certain.
   Cut classify(const std::array<glm::vec2, 3>& uvs) const;
 

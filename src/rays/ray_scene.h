@@ -88,8 +88,7 @@ class RayScene {
   std::optional<Hit> closestHit(const Ray& ray) const;
   /// Whether anything stands in the ray's way; cheaper than trace().
   bool occluded(const Ray& ray) const;
-  /// occluded() for each ray: free[i] = 1 where nothing stands in the way of rays[i]. Rays of one
-  /// origin or direction gain most.
+  /// occluded() for each ray: free[i] = 1 where nothing stands in the way of rays[i].
   void visibility(std::span<const Ray> rays, std::span<std::uint8_t> free) const;
 
   SurfacePoint surfaceAt(const RayHit& hit, const Ray& ray) const;

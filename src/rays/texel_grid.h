@@ -37,8 +37,8 @@ class TexelGrid {
   }
 
   /// Alpha in [0, 255].
-  float alpha(const glm::vec2& uv) const {
-    const Cell c = cellAt(uv);
+  float alpha(const glm::vec2& uv) const { return alpha(cellAt(uv)); }
+  float alpha(const Cell& c) const {
     const auto a = [this](int x, int y) { return static_cast<float>(image_->at(x, y)[3]); };
     return glm::mix(glm::mix(a(c.x0, c.y0), a(c.x1, c.y0), c.s),
                     glm::mix(a(c.x0, c.y1), a(c.x1, c.y1), c.s), c.t);

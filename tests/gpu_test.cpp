@@ -28,7 +28,8 @@ TEST(Barrier, WritesAreMadeVisibleAndReadsAreNot) {
                                Access::eDepthStencilAttachmentWrite | Access::eShaderStorageWrite));
   }
   for (const Use use :
-       {Use::kTransferSource, Use::kFragmentSampled, Use::kVertexInput, Use::kHostRead}) {
+       {Use::kTransferSource, Use::kFragmentSampled, Use::kComputeSampled, Use::kVertexInput,
+        Use::kFragmentStorage, Use::kHostRead}) {
     const UseInfo info = useInfo(use);
     EXPECT_TRUE(info.stages);
     EXPECT_FALSE(info.access & (Access::eTransferWrite | Access::eColorAttachmentWrite |

@@ -23,12 +23,16 @@ UseInfo useInfo(Use use) {
               Layout::eDepthAttachmentOptimal};
     case Use::kFragmentSampled:
       return {Stage::eFragmentShader, Access::eShaderSampledRead, Layout::eShaderReadOnlyOptimal};
+    case Use::kComputeSampled:
+      return {Stage::eComputeShader, Access::eShaderSampledRead, Layout::eShaderReadOnlyOptimal};
     case Use::kVertexInput:
       return {Stage::eVertexInput, Access::eVertexAttributeRead | Access::eIndexRead,
               Layout::eUndefined};
     case Use::kComputeStorage:
       return {Stage::eComputeShader, Access::eShaderStorageRead | Access::eShaderStorageWrite,
               Layout::eUndefined};
+    case Use::kFragmentStorage:
+      return {Stage::eFragmentShader, Access::eShaderStorageRead, Layout::eUndefined};
     case Use::kHostRead:
       return {Stage::eHost, Access::eHostRead, Layout::eUndefined};
   }

@@ -14,8 +14,10 @@ enum class Use {
   kColorAttachment,  ///< drawn to, blended or resolved to
   kDepthAttachment,  ///< depth-tested and written
   kFragmentSampled,  ///< sampled in a fragment shader
+  kComputeSampled,   ///< sampled in a compute shader
   kVertexInput,      ///< vertex and index buffer
   kComputeStorage,   ///< storage buffer of a compute shader, read and written
+  kFragmentStorage,  ///< storage buffer that a fragment shader reads
   kHostRead,         ///< read on the CPU after a fence
 };
 

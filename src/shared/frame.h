@@ -2,27 +2,32 @@
 #define VERDURE_SHARED_FRAME_H_
 
 #include "portable.h"
+#include "sky_formula.h"
 
 // What the shaders of one frame share. Only mat4 and vec4: std140 and C++ agree on them.
+// Light is in frame units: kcd/m^2 times a power of two that brings the brightest thing (the sun's
+// disk by day) just below the largest half float.
 
 SHARED_BEGIN
 
 struct FrameUniforms {
   mat4 clip_from_world;
   mat4 shadow_from_world;  ///< x, y in [0, 1] over the shadow map, z = its depth
-  vec4 eye;                ///< xyz
+  vec4 eye;                ///< xyz; w = frame units of 1 kcd/m^2
   vec4 to_sun;             ///< unit; w = size of a shadow map texel, m
-  vec4 sun_color;          ///< w = 1 / size of the shadow map
-  vec4 ambient_color;
-  vec4 sky_horizon;
-  vec4 sky_zenith;
+  vec4 sun_light;          ///< irradiance / pi of a surface facing the sun; w = 1 / size of the map
+  vec4 sun_disk;           ///< luminance; w = angular radius
+  vec4 open_sky;           ///< irradiance / pi of open ground by the sky
   vec4
       ground;  ///< height, radius of the disc, half distance of the haze, size of a texture tile, m
-  vec4 ray_right;  ///< ray through pixel (x, y) of [-1, 1]^2: forward + x right + y down
+  vec4 ground_map;  ///< corner x, z of the map of light on the ground, 1 / its size, m; 0 = none
+  vec4 ray_right;   ///< ray through pixel (x, y) of [-1, 1]^2: forward + x right + y down
   vec4 ray_down;
   vec4 ray_forward;
+  vec4 open_light[9];  ///< shIrradiance() / pi by the open sky and the open ground
+  SkyFormula sky;  ///< kcd/m^2, where the sky has one
 };
-SHARED_SIZE(FrameUniforms, 288);
+SHARED_SIZE(FrameUniforms, 560);
 
 /// Push constants of one draw.
 struct DrawUniforms {
@@ -31,6 +36,29 @@ struct DrawUniforms {
   vec4 surface;  ///< alpha cutoff of the texture, normal map's scale, k_s, exponent
 };
 SHARED_SIZE(DrawUniforms, 48);
+
+/// Push constants of tone_pass.
+struct ToneUniforms {
+  vec4 background;  ///< linear display RGB
+  float key;        ///< scaled luminance of the average
+  float white;      ///< smallest scaled luminance that is pure white
+  float average;    ///< frame units; 0 = as measured
+  float bloom;      ///< share of light that is spread
+};
+SHARED_SIZE(ToneUniforms, 32);
+
+/// Push constants of transfer_pass. A vertex has, for its front and (two-sided) its back, `pairs`
+/// words for each colour channel, then `bounce_pairs`.
+struct TransferUniforms {
+  uint count;                ///< vertices of this part
+  uint first_vertex;         ///< of the light that is written
+  uint pairs;                ///< of coefficients by the sky
+  uint bounce_pairs;         ///< of the bounced part's, by the sun
+  uint first_weight;         ///< of the sky's weights for this number of bands
+  uint first_bounce_weight;  ///< of the sun's
+  uint two_sided;            ///< 0 or 1
+};
+SHARED_SIZE(TransferUniforms, 28);
 
 SHARED_END
 

@@ -23,6 +23,7 @@ using uint = std::uint32_t;
 using glm::abs;
 using glm::acos;
 using glm::asin;
+using glm::atan;
 using glm::clamp;
 using glm::cos;
 using glm::cross;

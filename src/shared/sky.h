@@ -3,16 +3,21 @@
 
 #include "portable.h"
 
-// A plain gradient sky, and the haze that lets the ground end in it.
+// The horizon, and the haze that lets the ground end in it.
 
 SHARED_BEGIN
 
-/// Colour of the sky towards a unit direction: the horizon's at and below it, the zenith's
-/// overhead, with a bright band above the horizon as on a clear day.
-SHARED_FUNCTION vec3 skyColor(vec3 direction, vec3 horizon, vec3 zenith) {
-  float down = 1.0f - clamp(direction.y, 0.0f, 1.0f);
-  float down2 = down * down;
-  return mix(zenith, horizon, down2 * down2);
+/// Where the dome is looked up for a unit direction: below the horizon, just above it. Ground in
+/// haze and what lies beyond it take the sky's luminance there.
+SHARED_FUNCTION vec3 domeDirection(vec3 direction) {
+  return normalize(vec3(direction.x, max(direction.y, 0.01f), direction.z));
+}
+
+/// Where the upper half of the dome lies in an image of it: x = azimuth from +Z towards +X over
+/// [0, 1), y = 0 at the zenith and 1 at the horizon, proportional to the angle.
+SHARED_FUNCTION vec2 domeCoordinates(vec3 direction) {
+  float azimuth = direction.x == 0.0f && direction.z == 0.0f ? 0.0f : atan(direction.x, direction.z);
+  return vec2(azimuth * 0.15915494f, acos(clamp(direction.y, 0.0f, 1.0f)) * 0.63661977f);
 }
 
 /// Share of haze in front of something at `distance`: 0 at the eye, 0.5 at `half_distance`, towards
@@ -22,7 +27,7 @@ SHARED_FUNCTION float hazeShare(float distance, float half_distance) {
   return 1.0f - 1.0f / (1.0f + relative * relative);
 }
 
-/// Mean colour of the ground's texture (grass in summer).
+/// Mean reflectance of the ground's texture (grass in summer).
 SHARED_FUNCTION vec3 groundMeanColor() {
   return vec3(0.080f, 0.135f, 0.032f);
 }

@@ -9,6 +9,7 @@
 
 #include "verdure/image.h"
 #include "verdure/scene.h"
+#include "verdure/sky.h"
 
 /// Headless pictures of plants on Vulkan 1.3.
 namespace verdure {
@@ -18,50 +19,72 @@ enum class NormalSource {
   kCrown,  ///< the baked normals; never flipped: they mean "towards the light outside the crown"
 };
 
+/// Where the light on a surface comes from that is not the sun's own.
 enum class AmbientSource {
-  kConstant,  ///< k_a = 1
-  kBaked,     ///< the baked coefficient
+  kConstant,  ///< everywhere that of open ground under this sky: k_a = 1
+  kSky,       ///< of the sky and the open ground that the normal faces
+  kBaked,     ///< kSky times the baked coefficient
+  kTransfer,  ///< the transfer vectors' for this sky and sun; kBaked where an item has none
 };
 
-/// The terms of illumination model (1) of Luft et al. 2007, each with its switch.
+/// The terms of illumination model (1) of Luft et al. 2007, each with its switch, and light through
+/// leaves.
 struct Terms {
   NormalSource normal = NormalSource::kCrown;
   AmbientSource ambient_source = AmbientSource::kBaked;
   bool ambient = true;
-  bool diffuse = true;   ///< k_d (N.L)
-  bool specular = true;  ///< k_s (V.R)^n
-  bool shadow = true;    ///< S_i from the shadow map
-  bool textures = true;  ///< else a uniform matt colour of the material
+  bool diffuse = true;        ///< k_d (N.L)
+  bool specular = true;       ///< k_s (V.R)^n
+  bool shadow = true;         ///< S_i from the shadow map
+  bool textures = true;       ///< else a uniform matt colour of the material
+  bool transmission = false;  ///< leaves show the light on their far side (shared/leaf.h)
 };
 
-/// Published combinations: "standard" (leaf normals, constant ambient) and "expressive" (Luft).
+/// Published combinations: "standard" (leaf normals, constant ambient), "expressive" (Luft: crown
+/// normals, baked ambient) and "transfer" (Habel: leaf normals, transfer vectors, transmission).
 /// Throws Error for an unknown name.
 Terms presetTerms(const std::string& name);
 const std::vector<std::string>& presetNames();
 
-/// One picture. Colours of lights are linear and not bound to 1; what exceeds 1 in the picture is
-/// cut. The defaults are a clear summer day.
+/// From luminance to display: Reinhard et al., "Photographic Tone Reproduction for Digital Images",
+/// SIGGRAPH 2002.
+struct Exposure {
+  /// Exposure value at ISO 100 (15 = full sun): of the luminance 0.125 cd/m^2 2^ev that takes the
+  /// place of the picture's log-average. Unset: that average, measured.
+  std::optional<float> ev;
+  float key = 0.3f;    ///< a: to which the average is scaled, > 0; 0.09 is a dark, 0.36 a light key
+  float white = 2.0f;  ///< smallest scaled luminance that becomes pure white, > 0
+};
+
+/// One picture. The defaults are a clear summer day.
 struct View {
   int width = 960;
   int height = 720;
   Camera camera;
-  float sun_azimuth = 0.9f;     ///< radians from +Z (south) towards +X (east)
-  float sun_elevation = 0.75f;  ///< radians above the horizon
+  Daylight daylight = preethamDaylight(3.0f, directionOf(0.9f, 0.75f));
+  int sky_bands = 5;  ///< of spherical harmonics that light the scene, 2 to 7
   Terms terms;
-  glm::vec3 sun_color{1.75f, 1.62f, 1.40f};
-  glm::vec3 ambient_color{0.50f, 0.56f, 0.62f};
+  Exposure exposure;
+  float bloom = 0.01f;  ///< share of the light that lens and eye spread, [0, 1]
   int shadow_map_size = 2048;
-  std::optional<glm::vec3> background;  ///< linear RGB instead of the gradient sky
+  /// Linear display RGB in [0, 1] instead of the sky and the sun's disk; not exposed.
+  std::optional<glm::vec3> background;
+  bool hdr = false;  ///< Frame::hdr is wanted, too
 };
 
 struct FrameTimes {
   double pack_ms = 0;    ///< packing and upload, CPU
-  double shadow_ms = 0;  ///< GPU
+  double shadow_ms = 0;  ///< GPU; with the light from transfer vectors, when it changed
   double color_ms = 0;   ///< GPU
+  double tone_ms = 0;    ///< GPU; exposure, bloom, tone curve
 };
 
 struct Frame {
-  Image image;  ///< sRGB, opaque
+  Image image;  ///< sRGB, opaque, tone-mapped
+  /// kcd/m^2, unexposed and without bloom: the plain average over each pixel. Halves (11 bits) of a
+  /// range that the daylight sets. Background is black. Empty unless View::hdr.
+  HdrImage hdr;
+  float average_luminance = 0.0f;  ///< kcd/m^2: log-average of the picture, or what the EV stands for
   FrameTimes times;
 };
 

@@ -10,6 +10,9 @@
 /// What is looked at, and from where: the same for the renderer and for the reference.
 namespace verdure {
 
+/// Unit direction of an azimuth from +Z (south) towards +X (east) and an elevation, radians.
+glm::vec3 directionOf(float azimuth, float elevation);
+
 struct Camera {
   glm::vec3 eye{0.0f, 2.0f, 10.0f};
   glm::vec3 target{0.0f, 2.0f, 0.0f};

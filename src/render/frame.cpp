@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 
 #include "render/look.h"
@@ -17,13 +18,12 @@ constexpr int kGroundNoiseSize = 128;
 constexpr vk::ImageAspectFlags kColorAspect = vk::ImageAspectFlagBits::eColor;
 constexpr vk::ImageAspectFlags kDepthAspect = vk::ImageAspectFlagBits::eDepth;
 
-vk::raii::DescriptorSetLayout makeFrameSet(const gpu::Device& device) {
+gpu::SetLayout makeFrameSet(const gpu::Device& device) {
   using Type = vk::DescriptorType;
   using Stage = vk::ShaderStageFlagBits;
-  return gpu::makeSetLayout(device,
-                            std::array{Type::eUniformBuffer, Type::eCombinedImageSampler,
-                                       Type::eCombinedImageSampler, Type::eCombinedImageSampler},
-                            Stage::eVertex | Stage::eFragment);
+  const Type image = Type::eCombinedImageSampler;
+  return {device, {Type::eUniformBuffer, image, image, image, image, image},
+          Stage::eVertex | Stage::eFragment};
 }
 
 vk::raii::DescriptorSetLayout makeMaterialSet(const gpu::Device& device) {
@@ -33,21 +33,52 @@ vk::raii::DescriptorSetLayout makeMaterialSet(const gpu::Device& device) {
                             vk::ShaderStageFlagBits::eFragment);
 }
 
+/// What the ground and the sky are drawn with; each plant has more.
+DrawKind kindOf(const View& view) {
+  const Sky* sky = view.daylight.sky.get();
+  return {.ambient_source = view.terms.ambient_source,
+          .formula_sky = sky != nullptr && sky->formula() != nullptr,
+          .background = view.background.has_value()};
+}
+
+/// kcd/m^2 that an exposure value stands for: reflected-light meters with K = 12.5 (ISO 2720).
+float meteredLuminance(float ev) {
+  return 0.125e-3f * std::exp2(ev);
+}
+
+/// Weights for transfer vectors, in frame units.
+std::vector<glm::vec2> transferWeights(const FrameLight& light, float angular_radius, float units) {
+  const auto prepared = [units](const Harmonics& h) {
+    Harmonics mirrored = mirroredAtHorizon(h);
+    for (glm::vec3& weight : mirrored.weights) weight *= units;
+    return mirrored;
+  };
+  return packWeights(
+      prepared(light.sky),
+      prepared(diskHarmonics(light.to_sun, angular_radius, light.sun_disk, kMostBounceBands)));
+}
+
 }  // namespace
 
 FrameLayout::FrameLayout(const gpu::Device& device)
     : frame_set(makeFrameSet(device)),
       material_set(makeMaterialSet(device)),
-      pipeline(gpu::makePipelineLayout(device, std::array{*frame_set, *material_set},
+      pipeline(gpu::makePipelineLayout(device, std::array{*frame_set.layout, *material_set},
                                        vk::ShaderStageFlagBits::eFragment,
                                        sizeof(shared::DrawUniforms))) {}
 
 FrameDrawer::FrameDrawer(const gpu::Device& device)
     : device_(&device),
       layout_(device),
+      transfer_pass_(device),
       shadow_pass_(device, layout_),
-      sky_pass_(device, layout_),
-      timers_(device, 3) {
+      exposure_pass_(device),
+      bloom_pass_(device),
+      tone_pass_(device),
+      timers_(device, 4),
+      frame_set_(device, layout_.frame_set),
+      sky_image_(device),
+      ground_light_(device) {
   gpu::Upload upload(device);
   ground_texture_ = upload.texture(buildColorMips(makeGroundTexture(kGroundTextureSize), {}).levels,
                                    vk::Format::eR8G8B8A8Srgb);
@@ -55,37 +86,30 @@ FrameDrawer::FrameDrawer(const gpu::Device& device)
                                  vk::Format::eR8G8B8A8Unorm);
   upload.finish();
   // No anisotropic filter: ground_pass.frag takes several taps along a grazing footprint itself.
-  ground_sampler_ = device.raii().createSampler({.magFilter = vk::Filter::eLinear,
-                                                 .minFilter = vk::Filter::eLinear,
-                                                 .mipmapMode = vk::SamplerMipmapMode::eLinear,
-                                                 .maxLod = VK_LOD_CLAMP_NONE});
-  // Bilinear comparison where the device has it for this format; else the tent has harder steps.
+  using Beyond = vk::SamplerAddressMode;
+  ground_sampler_ = gpu::makeSampler(device, vk::Filter::eLinear, Beyond::eRepeat);
+  edge_sampler_ = gpu::makeSampler(device, vk::Filter::eLinear, Beyond::eClampToEdge);
+  sky_sampler_ = device.raii().createSampler({.magFilter = vk::Filter::eLinear,
+                                              .minFilter = vk::Filter::eLinear,
+                                              .addressModeU = Beyond::eRepeat,
+                                              .addressModeV = Beyond::eClampToEdge});
+  // Bilinear comparison where the device has it for this format; else half-shadows have steps.
   const bool smooth =
       bool(device.physical().getFormatProperties(FrameLayout::kDepth).optimalTilingFeatures &
            vk::FormatFeatureFlagBits::eSampledImageFilterLinear);
   const vk::Filter filter = smooth ? vk::Filter::eLinear : vk::Filter::eNearest;
-  shadow_sampler_ =
-      device.raii().createSampler({.magFilter = filter,
-                                   .minFilter = filter,
-                                   .addressModeU = vk::SamplerAddressMode::eClampToEdge,
-                                   .addressModeV = vk::SamplerAddressMode::eClampToEdge,
-                                   .compareEnable = true,
-                                   .compareOp = vk::CompareOp::eLessOrEqual});
+  shadow_sampler_ = device.raii().createSampler({.magFilter = filter,
+                                                 .minFilter = filter,
+                                                 .addressModeU = Beyond::eClampToEdge,
+                                                 .addressModeV = Beyond::eClampToEdge,
+                                                 .compareEnable = true,
+                                                 .compareOp = vk::CompareOp::eLessOrEqual});
   uniforms_ = gpu::makeBuffer(device, sizeof(shared::FrameUniforms),
                               vk::BufferUsageFlagBits::eUniformBuffer, gpu::MemoryUse::kToGpu);
-  const std::array sizes{
-      vk::DescriptorPoolSize{.type = vk::DescriptorType::eUniformBuffer, .descriptorCount = 1},
-      vk::DescriptorPoolSize{.type = vk::DescriptorType::eCombinedImageSampler,
-                             .descriptorCount = 3}};
-  pool_ = device.raii().createDescriptorPool(
-      {.flags = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
-       .maxSets = 1,
-       .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
-       .pPoolSizes = sizes.data()});
-  frame_set_ = std::move(vk::raii::DescriptorSets(
-      device.raii(), vk::DescriptorSetAllocateInfo{.descriptorPool = *pool_,
-                                                   .descriptorSetCount = 1,
-                                                   .pSetLayouts = &*layout_.frame_set})[0]);
+  frame_set_.setBuffer(0, uniforms_);
+  frame_set_.setTexture(2, ground_texture_, *ground_sampler_);
+  frame_set_.setTexture(3, ground_noise_, *ground_sampler_);
+  frame_set_.setTexture(5, ground_light_.texture(), *edge_sampler_);
 }
 
 void FrameDrawer::checkView(const View& view) const {
@@ -103,38 +127,34 @@ void FrameDrawer::checkView(const View& view) const {
   check("width", view.width, 1);
   check("height", view.height, 1);
   check("shadow_map_size", view.shadow_map_size, 16);
+  const auto demand = [](bool good, const char* what, const char* range) {
+    if (!good) throw Error("view", std::string(what) + " is out of range", range);
+  };
+  demand(view.sky_bands >= 2 && view.sky_bands <= kMaxBands, "sky_bands", "choose 2 to 7");
+  demand(view.exposure.key > 0.0f && std::isfinite(view.exposure.key), "exposure.key",
+         "choose a number above 0");
+  demand(view.exposure.white > 0.0f && std::isfinite(view.exposure.white), "exposure.white",
+         "choose a number above 0");
+  demand(!view.exposure.ev || std::abs(*view.exposure.ev) <= 40.0f, "exposure.ev",
+         "choose -40 to 40");
+  demand(view.bloom >= 0.0f && view.bloom <= 1.0f, "bloom", "choose 0 to 1");
+  const glm::vec3& sun = view.daylight.sun.direction;
+  demand(std::abs(glm::length(sun) - 1.0f) < 1e-3f, "the direction of the sun",
+         "make it a unit vector");
 }
 
 void FrameDrawer::resize(const View& view) {
-  using Usage = vk::ImageUsageFlagBits;
-  const auto width = static_cast<std::uint32_t>(view.width);
-  const auto height = static_cast<std::uint32_t>(view.height);
-  if (!targets_ || targets_->color.request.width != width ||
-      targets_->color.request.height != height) {
+  if (!targets_ || !targets_->fits(view.width, view.height)) {
     targets_.reset();
-    gpu::ImageRequest request{.format = FrameLayout::kColor,
-                              .width = width,
-                              .height = height,
-                              .samples = FrameLayout::kSamples,
-                              .usage = Usage::eColorAttachment};
-    gpu::Texture color = gpu::makeTexture(*device_, request);
-    request.samples = vk::SampleCountFlagBits::e1;
-    request.usage = Usage::eColorAttachment | Usage::eTransferSrc;
-    gpu::Texture resolved = gpu::makeTexture(*device_, request);
-    gpu::Texture depth = gpu::makeTexture(*device_, {.format = FrameLayout::kDepth,
-                                                     .width = width,
-                                                     .height = height,
-                                                     .samples = FrameLayout::kSamples,
-                                                     .usage = Usage::eDepthStencilAttachment,
-                                                     .aspect = kDepthAspect});
-    gpu::Buffer readback =
-        gpu::makeBuffer(*device_, vk::DeviceSize{width} * height * 4,
-                        vk::BufferUsageFlagBits::eTransferDst, gpu::MemoryUse::kFromGpu);
-    targets_ =
-        Targets{std::move(color), std::move(depth), std::move(resolved), std::move(readback)};
+    targets_.emplace(*device_, static_cast<std::uint32_t>(view.width),
+                     static_cast<std::uint32_t>(view.height));
+    exposure_pass_.setSource(targets_->resolved);
+    bloom_pass_.setSource(targets_->resolved);
+    tone_pass_.setSource(targets_->color, bloom_pass_.result(), exposure_pass_.result());
   }
   const auto size = static_cast<std::uint32_t>(view.shadow_map_size);
   if (!shadow_map_ || shadow_map_->request.width != size) {
+    using Usage = vk::ImageUsageFlagBits;
     shadow_map_.reset();
     shadow_map_ =
         gpu::makeTexture(*device_, {.format = FrameLayout::kDepth,
@@ -142,60 +162,48 @@ void FrameDrawer::resize(const View& view) {
                                     .height = size,
                                     .usage = Usage::eDepthStencilAttachment | Usage::eSampled,
                                     .aspect = kDepthAspect});
-    writeFrameSet();
+    frame_set_.setTexture(1, *shadow_map_, *shadow_sampler_);
   }
 }
 
-void FrameDrawer::writeFrameSet() {
-  const vk::DescriptorBufferInfo uniforms{.buffer = *uniforms_.buffer, .range = VK_WHOLE_SIZE};
-  const vk::DescriptorImageInfo shadow{.sampler = *shadow_sampler_,
-                                       .imageView = *shadow_map_->view,
-                                       .imageLayout = vk::ImageLayout::eShaderReadOnlyOptimal};
-  const vk::DescriptorImageInfo ground{.sampler = *ground_sampler_,
-                                       .imageView = *ground_texture_.view,
-                                       .imageLayout = vk::ImageLayout::eShaderReadOnlyOptimal};
-  vk::DescriptorImageInfo noise = ground;
-  noise.imageView = *ground_noise_.view;
-  const auto write = [this](std::uint32_t binding, vk::DescriptorType type) {
-    return vk::WriteDescriptorSet{
-        .dstSet = *frame_set_, .dstBinding = binding, .descriptorCount = 1, .descriptorType = type};
-  };
-  std::array writes{write(0, vk::DescriptorType::eUniformBuffer),
-                    write(1, vk::DescriptorType::eCombinedImageSampler),
-                    write(2, vk::DescriptorType::eCombinedImageSampler),
-                    write(3, vk::DescriptorType::eCombinedImageSampler)};
-  writes[0].pBufferInfo = &uniforms;
-  writes[1].pImageInfo = &shadow;
-  writes[2].pImageInfo = &ground;
-  writes[3].pImageInfo = &noise;
-  device_->raii().updateDescriptorSets(writes, nullptr);
+const Harmonics& FrameDrawer::skyOf(const View& view) {
+  const int bands = std::max(view.sky_bands, 3);  // three light unshadowed surfaces
+  if (known_harmonics_.bands != bands || known_sky_ != view.daylight.sky) {
+    known_sky_ = view.daylight.sky;
+    known_harmonics_ = known_sky_ ? projectSky(*known_sky_, bands) : Harmonics{bands, {}};
+  }
+  return known_harmonics_;
 }
 
-shared::FrameUniforms FrameDrawer::makeUniforms(const GpuScene& scene, const View& view) const {
+shared::FrameUniforms FrameDrawer::makeUniforms(const GpuScene& scene, const View& view,
+                                                const FrameLight& light, float units) const {
   shared::FrameUniforms u{};
   const float aspect = static_cast<float>(view.width) / static_cast<float>(view.height);
   const CameraRays rays = cameraRays(view.camera, aspect);
   u.clip_from_world = clipFromWorld(view.camera, aspect);
-  u.eye = glm::vec4(rays.eye, 0.0f);
+  u.eye = glm::vec4(rays.eye, units);
   u.ray_right = glm::vec4(rays.right, 0.0f);
   u.ray_down = glm::vec4(rays.down, 0.0f);
   u.ray_forward = glm::vec4(rays.forward, 0.0f);
-  const glm::vec3 to_sun = directionOf(view.sun_azimuth, view.sun_elevation);
-  const ShadowFit fit = fitShadow(scene.bounds(), to_sun, view.shadow_map_size);
+  const ShadowFit fit = fitShadow(scene.bounds(), light.to_sun, view.shadow_map_size);
   u.shadow_from_world = fit.shadow_from_world;
-  u.to_sun = glm::vec4(to_sun, fit.texel_m);
-  u.sun_color = glm::vec4(view.sun_color, 1.0f / static_cast<float>(view.shadow_map_size));
-  u.ambient_color = glm::vec4(view.ambient_color, 0.0f);
-  u.sky_horizon = glm::vec4(view.background.value_or(look::kSkyHorizon), 0.0f);
-  u.sky_zenith = glm::vec4(view.background.value_or(look::kSkyZenith), 0.0f);
+  u.to_sun = glm::vec4(light.to_sun, fit.texel_m);
+  u.sun_light = glm::vec4(light.sun * units, 1.0f / static_cast<float>(view.shadow_map_size));
+  u.sun_disk = glm::vec4(light.sun_disk * units, view.daylight.sun.angular_radius);
+  u.open_sky = glm::vec4(light.open_sky * units, 0.0f);
+  for (std::size_t i = 0; i < 9; ++i)
+    u.open_light[i] = glm::vec4(light.open_light.weights[i] * units, 0.0f);
   const float distance = glm::length(view.camera.eye - view.camera.target);
   const float haze = std::max(look::kHazeHalf * distance, look::kHazeHalfLeast_m);
   u.ground = glm::vec4(scene.groundHeight(), look::kGroundRadius * haze, haze, look::kGroundTile_m);
+  u.ground_map = glm::vec4(ground_light_.place(), 0.0f);
+  if (view.daylight.sky != nullptr && view.daylight.sky->formula() != nullptr)
+    u.sky = *view.daylight.sky->formula();
   return u;
 }
 
 void FrameDrawer::recordColor(const vk::raii::CommandBuffer& commands, const GpuScene& scene,
-                              const View& view) const {
+                              const View& view, const DrawKind& kind) const {
   gpu::imageBarrier(commands, *targets_->color.image, kColorAspect, gpu::Use::kUndefined,
                     gpu::Use::kColorAttachment);
   gpu::imageBarrier(commands, *targets_->resolved.image, kColorAspect, gpu::Use::kUndefined,
@@ -209,8 +217,8 @@ void FrameDrawer::recordColor(const vk::raii::CommandBuffer& commands, const Gpu
       .resolveImageView = *targets_->resolved.view,
       .resolveImageLayout = vk::ImageLayout::eColorAttachmentOptimal,
       .loadOp = vk::AttachmentLoadOp::eClear,
-      .storeOp = vk::AttachmentStoreOp::eDontCare,
-      .clearValue = vk::ClearValue(vk::ClearColorValue(std::array{0.0f, 0.0f, 0.0f, 1.0f}))};
+      .storeOp = vk::AttachmentStoreOp::eStore,  // the tone pass reads the samples
+      .clearValue = vk::ClearValue(vk::ClearColorValue(std::array{0.0f, 0.0f, 0.0f, 0.0f}))};
   const vk::RenderingAttachmentInfo depth{
       .imageView = *targets_->depth.view,
       .imageLayout = vk::ImageLayout::eDepthAttachmentOptimal,
@@ -228,50 +236,72 @@ void FrameDrawer::recordColor(const vk::raii::CommandBuffer& commands, const Gpu
                                        .maxDepth = 1.0f});
   commands.setScissor(0, area);
   plant_pass_.record(commands, layout_, *frame_set_, scene, view.terms);
-  if (scene.ground()) ground_pass_.record(commands, layout_, *frame_set_, view.terms);
-  sky_pass_.record(commands, layout_, *frame_set_);
+  if (scene.ground()) ground_pass_.record(commands, layout_, *frame_set_, view.terms, kind);
+  sky_pass_.record(commands, layout_, *frame_set_, kind);
   commands.endRendering();
 }
 
-Frame FrameDrawer::draw(const GpuScene& scene, const View& view) {
+void FrameDrawer::recordTone(const vk::raii::CommandBuffer& commands, const View& view,
+                             float units) const {
+  gpu::imageBarrier(commands, *targets_->color.image, kColorAspect, gpu::Use::kColorAttachment,
+                    gpu::Use::kFragmentSampled);
+  gpu::imageBarrier(commands, *targets_->resolved.image, kColorAspect, gpu::Use::kColorAttachment,
+                    gpu::Use::kComputeSampled);
+  if (!view.exposure.ev) exposure_pass_.record(commands, look::kLeastLuminance * units);
+  gpu::imageBarrier(commands, *targets_->resolved.image, kColorAspect, gpu::Use::kComputeSampled,
+                    gpu::Use::kFragmentSampled);
+  bloom_pass_.record(commands, view.bloom > 0.0f);
+  tone_pass_.record(
+      commands, targets_->picture,
+      {.background = glm::vec4(view.background.value_or(glm::vec3(0.0f)), 0.0f),
+       .key = view.exposure.key,
+       .white = view.exposure.white,
+       .average = view.exposure.ev ? meteredLuminance(*view.exposure.ev) * units : 0.0f,
+       .bloom = view.bloom});
+}
+
+Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
   checkView(view);
   resize(view);
-  const shared::FrameUniforms uniforms = makeUniforms(scene, view);
+  const FrameLight light = makeFrameLight(view, skyOf(view), scene.ground());
+  sky_image_.look(view.daylight.sky);
+  const float units = frameUnits(std::max(light.brightest, sky_image_.brightest()));
+  if (sky_image_.fill(units)) frame_set_.setTexture(4, sky_image_.texture(), *sky_sampler_);
+  std::vector<glm::vec2> weights;
+  if (view.terms.ambient_source == AmbientSource::kTransfer) {
+    weights = transferWeights(light, view.daylight.sun.angular_radius, units);
+    ground_light_.update(scene.grounds(), scene_id_, weights, light.open_sky * units);
+  }
+  const shared::FrameUniforms uniforms = makeUniforms(scene, view, light, units);
   std::memcpy(uniforms_.memory.mapped(), &uniforms, sizeof(uniforms));
+  const DrawKind kind = kindOf(view);
   plant_pass_.prepare(*device_, layout_, scene, view.terms);
-  if (scene.ground()) ground_pass_.prepare(*device_, layout_, view.terms);
+  if (scene.ground()) ground_pass_.prepare(*device_, layout_, view.terms, kind);
+  sky_pass_.prepare(*device_, layout_, kind);
 
   device_->submit([&](const vk::raii::CommandBuffer& commands) {
     timers_.reset(commands);
     timers_.stamp(commands, 0);
+    sky_image_.record(commands);
+    ground_light_.record(commands);
+    if (!weights.empty()) transfer_pass_.record(commands, scene.transfer(), std::move(weights));
     shadow_pass_.record(commands, layout_, *frame_set_, scene, *shadow_map_, view.terms.shadow);
     timers_.stamp(commands, 1);
-    recordColor(commands, scene, view);
+    recordColor(commands, scene, view, kind);
     timers_.stamp(commands, 2);
-
-    gpu::imageBarrier(commands, *targets_->resolved.image, kColorAspect, gpu::Use::kColorAttachment,
-                      gpu::Use::kTransferSource);
-    const vk::BufferImageCopy copy{
-        .imageSubresource = {.aspectMask = kColorAspect, .layerCount = 1},
-        .imageExtent = {targets_->resolved.request.width, targets_->resolved.request.height, 1}};
-    commands.copyImageToBuffer(*targets_->resolved.image, vk::ImageLayout::eTransferSrcOptimal,
-                               *targets_->readback.buffer, copy);
-    gpu::bufferBarrier(commands, *targets_->readback.buffer, gpu::Use::kTransferTarget,
-                       gpu::Use::kHostRead);
+    recordTone(commands, view, units);
+    timers_.stamp(commands, 3);
+    targets_->recordReadback(commands, view.hdr);
   });
   Frame frame;
-  frame.image = readBack();
+  frame.image = targets_->readPicture();
+  if (view.hdr) frame.hdr = targets_->readHdr(units);
+  frame.average_luminance =
+      view.exposure.ev ? meteredLuminance(*view.exposure.ev) : exposure_pass_.average() / units;
   frame.times.shadow_ms = timers_.milliseconds(0, 1);
   frame.times.color_ms = timers_.milliseconds(1, 2);
+  frame.times.tone_ms = timers_.milliseconds(2, 3);
   return frame;
-}
-
-Image FrameDrawer::readBack() const {
-  Image image(static_cast<int>(targets_->resolved.request.width),
-              static_cast<int>(targets_->resolved.request.height));
-  std::memcpy(image.rgba.data(), targets_->readback.memory.mapped(), image.rgba.size());
-  for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
-  return image;
 }
 
 }  // namespace verdure

@@ -4,11 +4,19 @@
 #include <optional>
 
 #include "gpu/timers.h"
+#include "render/bloom_pass.h"
+#include "render/exposure_pass.h"
 #include "render/frame_layout.h"
+#include "render/frame_light.h"
+#include "render/ground_light.h"
 #include "render/ground_pass.h"
 #include "render/plant_pass.h"
 #include "render/shadow_pass.h"
+#include "render/sky_image.h"
 #include "render/sky_pass.h"
+#include "render/targets.h"
+#include "render/tone_pass.h"
+#include "render/transfer_pass.h"
 
 namespace verdure {
 
@@ -17,38 +25,48 @@ class FrameDrawer {
  public:
   explicit FrameDrawer(const gpu::Device& device);
   const FrameLayout& layout() const { return layout_; }
+  const gpu::SetLayout& transferLayout() const { return transfer_pass_.setLayout(); }
+  /// The next frame shows another scene.
+  void forgetScene() { ++scene_id_; }
 
   /// Draws and reads back. Throws Error for sizes out of range.
-  Frame draw(const GpuScene& scene, const View& view);
+  Frame draw(GpuScene& scene, const View& view);
 
  private:
-  struct Targets {
-    gpu::Texture color, depth, resolved;
-    gpu::Buffer readback;
-  };
   void checkView(const View& view) const;
   void resize(const View& view);
-  void writeFrameSet();
-  shared::FrameUniforms makeUniforms(const GpuScene& scene, const View& view) const;
-  void recordColor(const vk::raii::CommandBuffer& commands, const GpuScene& scene,
-                   const View& view) const;
-  Image readBack() const;
+  const Harmonics& skyOf(const View& view);
+  shared::FrameUniforms makeUniforms(const GpuScene& scene, const View& view,
+                                     const FrameLight& light, float units) const;
+  void recordColor(const vk::raii::CommandBuffer& commands, const GpuScene& scene, const View& view,
+                   const DrawKind& kind) const;
+  void recordTone(const vk::raii::CommandBuffer& commands, const View& view, float units) const;
 
   const gpu::Device* device_;
   FrameLayout layout_;
+  TransferPass transfer_pass_;
   ShadowPass shadow_pass_;
   PlantPass plant_pass_;
   GroundPass ground_pass_;
   SkyPass sky_pass_;
+  ExposurePass exposure_pass_;
+  BloomPass bloom_pass_;
+  TonePass tone_pass_;
   gpu::Timers timers_;
   gpu::Texture ground_texture_, ground_noise_;
-  vk::raii::Sampler ground_sampler_ = nullptr;
+  vk::raii::Sampler ground_sampler_ = nullptr;  ///< repeats both ways
+  vk::raii::Sampler sky_sampler_ = nullptr;     ///< repeats around the horizon
+  vk::raii::Sampler edge_sampler_ = nullptr;
   vk::raii::Sampler shadow_sampler_ = nullptr;
   gpu::Buffer uniforms_;
-  vk::raii::DescriptorPool pool_ = nullptr;
-  vk::raii::DescriptorSet frame_set_ = nullptr;
+  gpu::DescriptorSet frame_set_;
+  SkyImage sky_image_;
+  GroundLight ground_light_;
   std::optional<gpu::Texture> shadow_map_;
   std::optional<Targets> targets_;
+  std::shared_ptr<const Sky> known_sky_;
+  Harmonics known_harmonics_;  ///< of it
+  int scene_id_ = 0;
 };
 
 }  // namespace verdure

@@ -5,9 +5,11 @@
 namespace verdure {
 
 GpuScene::GpuScene(const gpu::Device& device, const PackedScene& packed,
-                   vk::DescriptorSetLayout material_layout)
+                   vk::DescriptorSetLayout material_layout,
+                   const gpu::SetLayout& transfer_layout)
     : has_crown_normals_(!packed.crown_normals.empty()),
       draws_(packed.draws),
+      grounds_(packed.grounds),
       bounds_(packed.bounds),
       ground_(packed.ground),
       ground_height_(packed.ground_height) {
@@ -22,6 +24,7 @@ GpuScene::GpuScene(const gpu::Device& device, const PackedScene& packed,
   uvs_ = vertices(packed.uvs);
   instances_ = vertices(packed.instances);
   indices_ = upload.buffer(std::span(packed.indices), Usage::eIndexBuffer);
+  transfer_.emplace(device, upload, packed.transfers, packed.positions.size(), transfer_layout);
   for (std::size_t i = 0; i < packed.textures.size(); ++i)
     textures_.push_back(upload.texture(packed.textures[i].levels, packed.texture_is_linear[i]
                                                                       ? vk::Format::eR8G8B8A8Unorm
@@ -83,18 +86,21 @@ void GpuScene::bindVertices(const vk::raii::CommandBuffer& commands, NormalSourc
   const bool crown = normals == NormalSource::kCrown && has_crown_normals_;
   const gpu::Buffer& normal_stream = crown ? crown_normals_ : leaf_normals_;
   commands.bindVertexBuffers(
-      0, {*positions_.buffer, *normal_stream.buffer, *uvs_.buffer, *instances_.buffer},
-      {0, 0, 0, 0});
+      0,
+      {*positions_.buffer, *normal_stream.buffer, *uvs_.buffer, *instances_.buffer,
+       *transfer_->light().buffer},
+      {0, 0, 0, 0, 0});
   commands.bindIndexBuffer(*indices_.buffer, 0, vk::IndexType::eUint32);
 }
 
-std::vector<vk::VertexInputBindingDescription> GpuScene::bindings() {
+std::vector<vk::VertexInputBindingDescription> GpuScene::bindings(bool transfer) {
   return {{.binding = 0, .stride = sizeof(glm::vec3)},
           {.binding = 1, .stride = sizeof(PackedNormal)},
           {.binding = 2, .stride = sizeof(glm::vec2)},
           {.binding = 3,
            .stride = sizeof(PackedInstance),
-           .inputRate = vk::VertexInputRate::eInstance}};
+           .inputRate = vk::VertexInputRate::eInstance},
+          {.binding = 4, .stride = transfer ? 16u : 0u}};
 }
 
 std::vector<vk::VertexInputAttributeDescription> GpuScene::attributes() {
@@ -104,7 +110,9 @@ std::vector<vk::VertexInputAttributeDescription> GpuScene::attributes() {
           {.location = 2, .binding = 2, .format = Format::eR32G32Sfloat},
           {.location = 3, .binding = 3, .format = Format::eR32G32B32A32Sfloat, .offset = 0},
           {.location = 4, .binding = 3, .format = Format::eR32G32B32A32Sfloat, .offset = 16},
-          {.location = 5, .binding = 3, .format = Format::eR32G32B32A32Sfloat, .offset = 32}};
+          {.location = 5, .binding = 3, .format = Format::eR32G32B32A32Sfloat, .offset = 32},
+          {.location = 6, .binding = 4, .format = Format::eR16G16B16A16Sfloat, .offset = 0},
+          {.location = 7, .binding = 4, .format = Format::eR16G16B16A16Sfloat, .offset = 8}};
 }
 
 }  // namespace verdure

@@ -1,7 +1,5 @@
 #include "render/ground_pass.h"
 
-#include "render/terms.h"
-
 namespace verdure {
 namespace {
 
@@ -15,8 +13,9 @@ constexpr std::uint32_t kSlices = 64;  // as in ground_pass.vert
 
 }  // namespace
 
-void GroundPass::prepare(const gpu::Device& device, const FrameLayout& layout, const Terms& terms) {
-  gpu::Constants constants = termConstants(terms);
+void GroundPass::prepare(const gpu::Device& device, const FrameLayout& layout, const Terms& terms,
+                         const DrawKind& kind) {
+  gpu::Constants constants = termConstants(terms, kind);
   if (pipelines_.contains(constants)) return;
   vk::raii::Pipeline pipeline =
       gpu::makeGraphicsPipeline(device, {.vertex = kVertex,
@@ -30,8 +29,8 @@ void GroundPass::prepare(const gpu::Device& device, const FrameLayout& layout, c
 }
 
 void GroundPass::record(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,
-                        vk::DescriptorSet frame_set, const Terms& terms) const {
-  commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipelines_.at(termConstants(terms)));
+                        vk::DescriptorSet frame_set, const Terms& terms, const DrawKind& kind) const {
+  commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipelines_.at(termConstants(terms, kind)));
   commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout.pipeline, 0, {frame_set},
                               nullptr);
   commands.draw(3 * kSlices, 1, 0, 0);

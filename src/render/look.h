@@ -7,16 +7,15 @@
 
 namespace verdure::look {
 
-// Coefficients of (1). k_a and k_d are the surface's colour times 1: the balance of sky and sun
-// lies in View's light colours. Leaves have a waxy, broad highlight, bark nearly none.
+// Coefficients of (1). k_a and k_d are the surface's colour times 1; sky and sun are in physical
+// units. Leaves have a waxy, broad highlight, bark nearly none.
 inline constexpr float kLeafSpecular = 0.06f;
 inline constexpr float kLeafExponent = 12.0f;
 inline constexpr float kWoodSpecular = 0.015f;
 inline constexpr float kWoodExponent = 8.0f;
 
-// A clear summer sky, linear RGB.
-inline constexpr glm::vec3 kSkyHorizon{0.66f, 0.78f, 0.90f};
-inline constexpr glm::vec3 kSkyZenith{0.13f, 0.32f, 0.72f};
+// Added to every luminance before its logarithm, kcd/m^2: far below a starlit sky.
+inline constexpr float kLeastLuminance = 1e-9f;
 
 // Ground: side of a tile of the texture, radius of the disc and distance at which haze hides half,
 // the latter two in distances of the camera from its target (and at least in metres).

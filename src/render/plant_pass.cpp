@@ -13,9 +13,20 @@ constexpr std::uint32_t kFragment[] = {
 gpu::Constants constantsOf(const Draw& draw, const Terms& terms) {
   // A plant without baked light has its leaf normals in either stream: they are turned over.
   const bool leaf_normals = terms.normal == NormalSource::kLeaf || !draw.baked;
-  return termConstants(terms, {.flip_normal = draw.foliage && leaf_normals,
+  // Without transfer vectors it is lit as well as can be: unbaked, the coefficient is 1.
+  const AmbientSource source =
+      terms.ambient_source == AmbientSource::kTransfer && !draw.transfer ? AmbientSource::kBaked
+                                                                         : terms.ambient_source;
+  return termConstants(terms, {.ambient_source = source,
+                               .transmission = draw.foliage && terms.transmission,
+                               .flip_normal = draw.foliage && leaf_normals,
                                .alpha_test = draw.alpha_test,
                                .normal_map = draw.normal_map});
+}
+
+/// Two vertex layouts: see GpuScene::bindings().
+std::pair<bool, gpu::Constants> keyOf(const Draw& draw, const Terms& terms) {
+  return {draw.transfer, constantsOf(draw, terms)};
 }
 
 }  // namespace
@@ -23,19 +34,19 @@ gpu::Constants constantsOf(const Draw& draw, const Terms& terms) {
 void PlantPass::prepare(const gpu::Device& device, const FrameLayout& layout, const GpuScene& scene,
                         const Terms& terms) {
   for (const Draw& draw : scene.draws()) {
-    gpu::Constants constants = constantsOf(draw, terms);
-    if (pipelines_.contains(constants)) continue;
+    auto key = keyOf(draw, terms);
+    if (pipelines_.contains(key)) continue;
     vk::raii::Pipeline pipeline =
         gpu::makeGraphicsPipeline(device, {.vertex = kVertex,
                                            .fragment = kFragment,
-                                           .constants = constants,
+                                           .constants = key.second,
                                            .layout = *layout.pipeline,
-                                           .bindings = GpuScene::bindings(),
+                                           .bindings = GpuScene::bindings(draw.transfer),
                                            .attributes = GpuScene::attributes(),
                                            .color = FrameLayout::kColor,
                                            .depth = FrameLayout::kDepth,
                                            .samples = FrameLayout::kSamples});
-    pipelines_.emplace(std::move(constants), std::move(pipeline));
+    pipelines_.emplace(std::move(key), std::move(pipeline));
   }
 }
 
@@ -46,7 +57,7 @@ void PlantPass::record(const vk::raii::CommandBuffer& commands, const FrameLayou
   scene.bindVertices(commands, terms.normal);
   for (const Draw& draw : scene.draws()) {
     commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
-                          *pipelines_.at(constantsOf(draw, terms)));
+                          *pipelines_.at(keyOf(draw, terms)));
     commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout.pipeline, 0,
                                 {frame_set, scene.materialSet(draw.material)}, nullptr);
     commands.pushConstants<shared::DrawUniforms>(

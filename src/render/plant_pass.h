@@ -19,7 +19,8 @@ class PlantPass {
               vk::DescriptorSet frame_set, const GpuScene& scene, const Terms& terms) const;
 
  private:
-  std::map<gpu::Constants, vk::raii::Pipeline> pipelines_;
+  /// By whether there are transfer vectors, and the terms.
+  std::map<std::pair<bool, gpu::Constants>, vk::raii::Pipeline> pipelines_;
 };
 
 }  // namespace verdure

@@ -16,7 +16,11 @@ struct Preset {
 const std::vector<Preset>& presets() {
   static const std::vector<Preset> all{
       {"standard", {.normal = NormalSource::kLeaf, .ambient_source = AmbientSource::kConstant}},
-      {"expressive", {.normal = NormalSource::kCrown, .ambient_source = AmbientSource::kBaked}}};
+      {"expressive", {.normal = NormalSource::kCrown, .ambient_source = AmbientSource::kBaked}},
+      {"transfer",
+       {.normal = NormalSource::kLeaf,
+        .ambient_source = AmbientSource::kTransfer,
+        .transmission = true}}};
   return all;
 }
 
@@ -81,7 +85,9 @@ void Renderer::setScene(const Scene& scene) {
   const PackedScene packed = packScene(scene);
   guarded(deviceName(), [&] {
     state_->scene.reset();
-    state_->scene.emplace(state_->device, packed, *state_->frames.layout().material_set);
+    state_->frames.forgetScene();
+    state_->scene.emplace(state_->device, packed, *state_->frames.layout().material_set,
+                          state_->frames.transferLayout());
   });
   state_->pack_ms = timer.seconds() * 1e3;
 }

@@ -14,6 +14,9 @@
 namespace verdure {
 namespace {
 
+// A buffer of transfer vectors takes at most 64 MiB: half of what every device allows.
+constexpr std::size_t kTransferWords = std::size_t{1} << 24;
+
 class Packer {
  public:
   explicit Packer(const Scene& scene) : scene_(scene) {
@@ -58,6 +61,7 @@ class Packer {
     const Plant& plant = *item.plant;
     if (item.light != nullptr && item.light->meshes.size() != plant.meshes.size())
       throw Error(plant.name, "its baked light belongs to another plant", "bake this plant");
+    checkTransfer(item);
     const auto first_instance = static_cast<std::uint32_t>(out_.instances.size());
     for (const glm::mat4& instance : item.world_from_plant) {
       const glm::mat4 rows = glm::transpose(worldFromPlant(scene_, item, instance));
@@ -66,11 +70,45 @@ class Packer {
     for (std::size_t m = 0; m < plant.meshes.size(); ++m) {
       const MeshLight* light = item.light != nullptr ? &item.light->meshes[m] : nullptr;
       Draw draw = packMesh(plant, plant.meshes[m], light, any_baked);
+      if (item.transfer != nullptr) {
+        draw.transfer = true;
+        packTransfer(item.transfer->meshes[m], item.transfer->bands, item.transfer->bounce_bands,
+                     plant.meshes[m].positions.size(),
+                     static_cast<std::uint32_t>(draw.vertex_offset), kTransferWords,
+                     plant.name + ", mesh " + plant.meshes[m].name, out_.transfers);
+      }
       draw.first_instance = first_instance;
       draw.instance_count = static_cast<std::uint32_t>(item.world_from_plant.size());
       if (draw.index_count > 0 && draw.instance_count > 0) out_.draws.push_back(draw);
     }
     growBounds(bounds(plant), first_instance);
+  }
+
+  /// Transfer vectors know the directions of the world: a plant that was turned has others.
+  void checkTransfer(const SceneItem& item) {
+    if (item.transfer == nullptr) return;
+    if (item.transfer->meshes.size() != item.plant->meshes.size())
+      throw Error(item.plant->name, "its transfer vectors belong to another plant",
+                  "compute them for this plant");
+    const GroundTransfer& ground = item.transfer->ground;
+    PackedGround packed{ground, item.transfer->bands, item.transfer->bounce_bands, {}};
+    for (const glm::mat4& instance : item.world_from_plant) {
+      const glm::mat4 world = worldFromPlant(scene_, item, instance);
+      if (glm::mat3(world) != glm::mat3(1.0f))
+        throw Error(item.plant->name, "has transfer vectors and is turned or scaled",
+                    "draw it unturned or leave the vectors out");
+      packed.places.emplace_back(world[3].x, world[3].z);
+    }
+    if (ground.size <= 0) return;
+    if (ground.size > 4096 || !(ground.step > 0.0f))
+      throw Error(item.plant->name, "its ground's transfer vectors lie on no grid",
+                  "compute them again");
+    // Their lengths are those of a mesh of as many vertices.
+    std::vector<PackedTransfer> unused;
+    packTransfer(ground.vectors, packed.bands, packed.bounce_bands,
+                 static_cast<std::size_t>(ground.size) * static_cast<std::size_t>(ground.size), 0,
+                 kTransferWords, item.plant->name + ", ground", unused);
+    out_.grounds.push_back(std::move(packed));
   }
 
   void growBounds(const Bounds& box, std::uint32_t first_instance) {

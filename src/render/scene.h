@@ -2,11 +2,14 @@
 #define VERDURE_RENDER_SCENE_H_
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "gpu/resources.h"
 #include "render/mipmaps.h"
+#include "render/packed_transfer.h"
 #include "render/terms.h"
+#include "render/transfer_pass.h"
 #include "shared/frame.h"
 #include "verdure/render.h"
 
@@ -24,6 +27,7 @@ using PackedInstance = std::array<glm::vec4, 3>;
 struct Draw {
   bool foliage = false;
   bool baked = false;  ///< has crown normals; else they are the mesh's own
+  bool transfer = false;  ///< has transfer vectors
   bool alpha_test = false;
   bool normal_map = false;
   std::uint32_t index_count = 0, first_index = 0;
@@ -52,6 +56,13 @@ struct MaterialSlot {
   auto operator<=>(const MaterialSlot&) const = default;
 };
 
+/// The transfer vectors of the ground around a plant, and where such plants stand.
+struct PackedGround {
+  GroundTransfer transfer;
+  int bands = 0, bounce_bands = 0;
+  std::vector<glm::vec2> places;  ///< x, z of each instance's origin
+};
+
 /// A scene as arrays for the GPU. Coordinates are relative to the origin of the first item's plant.
 struct PackedScene {
   std::vector<glm::vec3> positions;
@@ -64,12 +75,15 @@ struct PackedScene {
   std::vector<MipChain> textures;
   std::vector<bool> texture_is_linear;
   std::vector<MaterialSlot> materials;
+  std::vector<PackedTransfer> transfers;
+  std::vector<PackedGround> grounds;
   Bounds bounds;  ///< of all instances
   bool ground = false;
   float ground_height = 0.0f;
 };
 
-/// Throws Error for a null plant, arrays of different lengths, indices out of range.
+/// Throws Error for a null plant, arrays of different lengths, indices out of range, transfer
+/// vectors of a plant that is turned or scaled.
 PackedScene packScene(const Scene& scene);
 
 /// A packed scene on the GPU, with a descriptor set for each material (set 1: base colour, normal
@@ -77,7 +91,7 @@ PackedScene packScene(const Scene& scene);
 class GpuScene {
  public:
   GpuScene(const gpu::Device& device, const PackedScene& packed,
-           vk::DescriptorSetLayout material_layout);
+           vk::DescriptorSetLayout material_layout, const gpu::SetLayout& transfer_layout);
 
   /// Binds all vertex streams and the index buffer; the normals are those asked for.
   void bindVertices(const vk::raii::CommandBuffer& commands, NormalSource normals) const;
@@ -86,9 +100,12 @@ class GpuScene {
   const Bounds& bounds() const { return bounds_; }
   bool ground() const { return ground_; }
   float groundHeight() const { return ground_height_; }
+  const std::vector<PackedGround>& grounds() const { return grounds_; }
+  GpuTransfer& transfer() { return *transfer_; }
 
-  /// Vertex bindings 0..3 and attributes: position, normal, uv, rows of the instance.
-  static std::vector<vk::VertexInputBindingDescription> bindings();
+  /// Vertex bindings 0..4 and attributes: position, normal, uv, rows of the instance, light from
+  /// transfer vectors (front, back). Without `transfer` every vertex reads the first one's light.
+  static std::vector<vk::VertexInputBindingDescription> bindings(bool transfer);
   static std::vector<vk::VertexInputAttributeDescription> attributes();
 
  private:
@@ -98,7 +115,9 @@ class GpuScene {
   std::vector<vk::raii::Sampler> samplers_;  ///< [clamp_u + 2 clamp_v]
   vk::raii::DescriptorPool pool_ = nullptr;
   std::vector<vk::raii::DescriptorSet> material_sets_;
+  std::optional<GpuTransfer> transfer_;
   std::vector<Draw> draws_;
+  std::vector<PackedGround> grounds_;
   Bounds bounds_;
   bool ground_ = false;
   float ground_height_ = 0.0f;

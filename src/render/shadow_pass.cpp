@@ -13,10 +13,12 @@ constexpr std::uint32_t kFragment[] = {
 #include "shaders/shadow_pass.frag.inc"
 };
 
-/// All streams but the normals.
-std::vector<vk::VertexInputAttributeDescription> attributesWithoutNormals() {
+/// Positions, texture coordinates and instances.
+std::vector<vk::VertexInputAttributeDescription> attributesOfShape() {
   std::vector<vk::VertexInputAttributeDescription> attributes = GpuScene::attributes();
-  std::erase_if(attributes, [](const auto& attribute) { return attribute.location == 1; });
+  std::erase_if(attributes, [](const auto& attribute) {
+    return attribute.location == 1 || attribute.location > 5;
+  });
   return attributes;
 }
 
@@ -24,8 +26,8 @@ vk::raii::Pipeline makePipeline(const gpu::Device& device, const FrameLayout& la
   return gpu::makeGraphicsPipeline(device, {.vertex = kVertex,
                                             .fragment = cut ? gpu::SpirV(kFragment) : gpu::SpirV(),
                                             .layout = *layout.pipeline,
-                                            .bindings = GpuScene::bindings(),
-                                            .attributes = attributesWithoutNormals(),
+                                            .bindings = GpuScene::bindings(false),
+                                            .attributes = attributesOfShape(),
                                             .depth = FrameLayout::kDepth,
                                             .depth_compare = vk::CompareOp::eLess,
                                             .depth_bias_slope = 1.5f});

@@ -8,6 +8,10 @@ namespace verdure {
 
 /// What a draw is, as far as its pipeline depends on it.
 struct DrawKind {
+  AmbientSource ambient_source = AmbientSource::kConstant;
+  bool formula_sky = false;  ///< the dome is drawn from its formula, not from an image
+  bool background = false;   ///< there is no dome
+  bool transmission = false;
   bool flip_normal = false;  ///< leaf normals: turned over on back faces
   bool alpha_test = false;
   bool normal_map = false;
@@ -15,10 +19,19 @@ struct DrawKind {
 };
 
 /// The specialisation constants, numbered as in src/shaders/terms.glsl.
-inline gpu::Constants termConstants(const Terms& terms, const DrawKind& kind = {}) {
-  return {terms.ambient,    terms.diffuse,   terms.specular,
-          terms.shadow,     terms.textures,  terms.ambient_source == AmbientSource::kBaked,
-          kind.flip_normal, kind.alpha_test, kind.normal_map};
+inline gpu::Constants termConstants(const Terms& terms, const DrawKind& kind) {
+  return {terms.ambient,
+          terms.diffuse,
+          terms.specular,
+          terms.shadow,
+          terms.textures,
+          static_cast<std::uint32_t>(kind.ambient_source),
+          kind.formula_sky,
+          kind.background,
+          kind.transmission,
+          kind.flip_normal,
+          kind.alpha_test,
+          kind.normal_map};
 }
 
 }  // namespace verdure

@@ -5,9 +5,6 @@
 
 namespace verdure {
 
-/// Unit direction of an azimuth from +Z (south) towards +X (east) and an elevation, radians.
-glm::vec3 directionOf(float azimuth, float elevation);
-
 /// Right, up and backward axes of a camera.
 glm::mat3 cameraAxes(const Camera& camera);
 

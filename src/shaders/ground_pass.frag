@@ -2,11 +2,14 @@
 #extension GL_GOOGLE_include_directive : require
 #include "frame_set.glsl"
 #include "shared/illumination.h"
-#include "shared/sky.h"
-#include "sun_visibility.glsl"
 #include "terms.glsl"
+#include "dome.glsl"
+#include "sun_visibility.glsl"
 
 layout(location = 0) in vec3 position;
+/// Where a covered sample lies: at the horizon the pixel's centre may lie above it, where the plane
+/// of the ground is behind the eye.
+layout(location = 1) centroid in vec3 covered;
 layout(location = 0) out vec4 out_color;
 
 /// A texture seen at a grazing angle: four taps along the long axis of the pixel's footprint, each
@@ -37,15 +40,26 @@ vec3 grass(vec2 p) {
   return blades * mix(0.55, 1.45, tone) * mix(vec3(1.0), dry, middle * broad);
 }
 
+/// Light on the ground from the sky and from what stands on it; open where the map ends.
+vec3 mappedLight(vec3 p) {
+  vec2 at = (p.xz - frame.ground_map.xy) * frame.ground_map.z;
+  bool open = any(lessThan(at, vec2(0.0))) || any(greaterThan(at, vec2(1.0)));
+  return open ? frame.open_sky.rgb : textureLod(ground_light, at, 0.0).rgb;
+}
+
 void main() {
-  vec3 to_eye = frame.eye.xyz - position;
+  vec3 to_eye = frame.eye.xyz - covered;
   float distance = length(to_eye);
   vec3 n = vec3(0.0, 1.0, 0.0);
   vec3 color = kTextures ? grass(position.xz) : vec3(0.18);
   float visibility = kShadow ? sunVisibility(position, n) : 1.0;
-  vec3 lit = illumination(frame.ambient_color.rgb, color * (kAmbient ? 1.0 : 0.0),
-                          frame.sun_color.rgb, visibility, color,
-                          kDiffuse ? diffuseFactor(n, frame.to_sun.xyz) : 0.0, 0.0, 0.0);
-  vec3 horizon = skyColor(-to_eye / distance, frame.sky_horizon.rgb, frame.sky_zenith.rgb);
-  out_color = vec4(mix(lit, horizon, hazeShare(distance, frame.ground.z)), 1.0);
+  vec3 ambient = kAmbientSource == kTransfer && frame.ground_map.z > 0.0 ? mappedLight(position)
+                                                                         : frame.open_sky.rgb;
+  vec3 lit = illumination(kAmbient ? ambient * color : vec3(0.0), frame.sun_light.rgb, visibility,
+                          kDiffuse ? color * diffuseFactor(n, frame.to_sun.xyz) : vec3(0.0), 0.0,
+                          0.0);
+  // Alpha 0 is the background, where there is one instead of the sky.
+  float haze = hazeShare(distance, frame.ground.z);
+  vec3 far = kBackground ? vec3(0.0) : domeLuminance(-to_eye / distance);
+  out_color = vec4(storable(mix(lit, far, haze)), kBackground ? 1.0 - haze : 1.0);
 }

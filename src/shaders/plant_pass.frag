@@ -2,19 +2,24 @@
 #extension GL_GOOGLE_include_directive : require
 #include "frame_set.glsl"
 #include "shared/illumination.h"
-#include "sun_visibility.glsl"
+#include "shared/leaf.h"
+#include "shared/sh.h"
 #include "terms.glsl"
+#include "sun_visibility.glsl"
 
 layout(set = 1, binding = 0) uniform sampler2D base_color;
 layout(set = 1, binding = 1) uniform sampler2D normal_map;
 layout(push_constant) uniform DrawBlock { DrawUniforms draw; };
 
+// Centroid: where a covered sample lies. At the edge of a small leaf the pixel's centre is outside,
+// where the texture is transparent and extrapolated light is anything, even negative.
 layout(location = 0) in vec3 position;
-layout(location = 1) in vec4 in_normal;
+layout(location = 1) centroid in vec4 in_normal;
 layout(location = 2) in vec2 uv;
-/// Where a covered sample lies: at the edge of a small leaf the pixel's centre is outside, and its
-/// texture coordinates lie beyond the leaf, where alpha is 0.
 layout(location = 3) centroid in vec2 covered_uv;
+// Irradiance / pi on the side of the vertex normal and on the other, from transfer vectors.
+layout(location = 4) centroid in vec3 front_light;
+layout(location = 5) centroid in vec3 back_light;
 layout(location = 0) out vec4 out_color;
 
 /// Which of the four samples an alpha-cut surface covers. Written here rather than left to the
@@ -60,21 +65,41 @@ void main() {
   }
   vec3 color = kTextures ? texel.rgb * draw.color.rgb : draw.matt.rgb;
 
-  vec3 n = normalize(in_normal.xyz);
+  // Opposite normals of neighbouring vertices cancel somewhere between them.
+  vec3 n = dot(in_normal.xyz, in_normal.xyz) > 1e-12 ? normalize(in_normal.xyz) : vec3(0, 1, 0);
   if (kFlipNormal && !gl_FrontFacing) n = -n;
   if (kNormalMap && kTextures) n = mappedNormal(n, p_x, p_y, uv_x, uv_y);
   vec3 l = frame.to_sun.xyz;
   vec3 v = normalize(frame.eye.xyz - position);
 
+  // The light on the side that is seen, and on the other.
+  vec3 near = vec3(0.0), beyond = vec3(0.0);
+  if (kAmbient) {
+    if (kAmbientSource == kTransfer) {
+      near = gl_FrontFacing ? front_light : back_light;
+      beyond = gl_FrontFacing ? back_light : front_light;
+    } else if (kAmbientSource == kConstant) {
+      near = beyond = frame.open_sky.rgb;
+    } else {
+      float k_a = kAmbientSource == kBaked ? in_normal.w : 1.0;
+      near = shIrradiance(n, frame.open_light) * k_a;
+      if (kTransmission) beyond = shIrradiance(-n, frame.open_light) * k_a;
+    }
+  }
+  vec3 ambient = near * color;
+  vec3 diffuse = kDiffuse ? color * diffuseFactor(n, l) : vec3(0.0);
+  if (kTransmission) {
+    vec3 k_t = leafTransmittance(color);
+    ambient += beyond * k_t;
+    if (kDiffuse) diffuse += k_t * diffuseFactor(-n, l);
+  }
+  float specular = kSpecular ? specularFactor(n, l, v, draw.surface.w) : 0.0;
   float visibility = 1.0;
-  if (kShadow) {
+  if (kShadow && (diffuse != vec3(0.0) || specular > 0.0)) {
     vec3 face = cross(p_x, p_y);
     visibility = sunVisibility(position, dot(face, face) > 0.0 ? normalize(face) : n);
   }
-  float k_a = kAmbient ? (kBakedAmbient ? in_normal.w : 1.0) : 0.0;
-  float diffuse = kDiffuse ? diffuseFactor(n, l) : 0.0;
-  float specular = kSpecular ? specularFactor(n, l, v, draw.surface.w) : 0.0;
-  out_color = vec4(illumination(frame.ambient_color.rgb, color * k_a, frame.sun_color.rgb,
-                                visibility, color, diffuse, draw.surface.z, specular),
-                   1.0);
+  vec3 lit = illumination(ambient, frame.sun_light.rgb, visibility, diffuse, draw.surface.z,
+                          specular);
+  out_color = vec4(clamp(lit, vec3(0.0), vec3(65000.0)), 1.0);
 }

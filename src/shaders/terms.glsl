@@ -5,7 +5,12 @@ layout(constant_id = 1) const bool kDiffuse = true;
 layout(constant_id = 2) const bool kSpecular = true;
 layout(constant_id = 3) const bool kShadow = true;
 layout(constant_id = 4) const bool kTextures = true;
-layout(constant_id = 5) const bool kBakedAmbient = true;
-layout(constant_id = 6) const bool kFlipNormal = false;
-layout(constant_id = 7) const bool kAlphaTest = false;
-layout(constant_id = 8) const bool kNormalMap = false;
+layout(constant_id = 5) const int kAmbientSource = 0;
+layout(constant_id = 6) const bool kFormulaSky = false;
+layout(constant_id = 7) const bool kBackground = false;  // takes the sky's place
+layout(constant_id = 8) const bool kTransmission = false;
+layout(constant_id = 9) const bool kFlipNormal = false;
+layout(constant_id = 10) const bool kAlphaTest = false;
+layout(constant_id = 11) const bool kNormalMap = false;
+// AmbientSource of verdure/render.h.
+const int kConstant = 0, kSky = 1, kBaked = 2, kTransfer = 3;

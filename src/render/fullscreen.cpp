@@ -1,0 +1,42 @@
+#include "render/fullscreen.h"
+
+namespace verdure {
+namespace {
+
+constexpr std::uint32_t kVertex[] = {
+#include "shaders/fullscreen.vert.inc"
+};
+
+}  // namespace
+
+vk::raii::Pipeline makeFullscreenPipeline(const gpu::Device& device, gpu::SpirV fragment,
+                                          vk::PipelineLayout layout, vk::Format target) {
+  return gpu::makeGraphicsPipeline(
+      device, {.vertex = kVertex, .fragment = fragment, .layout = layout, .color = target});
+}
+
+void drawFullscreen(const vk::raii::CommandBuffer& commands, const gpu::Texture& target,
+                    const vk::raii::Pipeline& pipeline, vk::PipelineLayout layout,
+                    vk::DescriptorSet set) {
+  gpu::imageBarrier(commands, *target.image, vk::ImageAspectFlagBits::eColor, gpu::Use::kUndefined,
+                    gpu::Use::kColorAttachment);
+  const vk::RenderingAttachmentInfo color{.imageView = *target.view,
+                                          .imageLayout = vk::ImageLayout::eColorAttachmentOptimal,
+                                          .loadOp = vk::AttachmentLoadOp::eDontCare,
+                                          .storeOp = vk::AttachmentStoreOp::eStore};
+  const vk::Rect2D area{.extent = {target.request.width, target.request.height}};
+  commands.beginRendering({.renderArea = area,
+                           .layerCount = 1,
+                           .colorAttachmentCount = 1,
+                           .pColorAttachments = &color});
+  commands.setViewport(0, vk::Viewport{.width = static_cast<float>(area.extent.width),
+                                       .height = static_cast<float>(area.extent.height),
+                                       .maxDepth = 1.0f});
+  commands.setScissor(0, area);
+  commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipeline);
+  commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, layout, 0, {set}, nullptr);
+  commands.draw(3, 1, 0, 0);
+  commands.endRendering();
+}
+
+}  // namespace verdure

@@ -65,6 +65,25 @@ struct BakeCommand {
 };
 void runBake(const BakeCommand& command);
 
+/// How a scene is lit.
+struct DaylightOptions {
+  std::string sky = "preetham";
+  std::string sun;          ///< AZIMUTH,ELEVATION; empty = 85,42 (of a panorama: its own)
+  std::string date, place;  ///< instead: both, or neither
+  double turbidity = 3.0;
+};
+Daylight parseDaylight(const DaylightOptions& options);
+
+/// How light becomes a picture.
+struct ExposureOptions {
+  std::string exposure = "auto";
+  double key = 0.3;
+  double white = 2.0;
+  double bloom = 0.01;
+};
+Exposure parseExposure(const ExposureOptions& options);
+float parseBloom(const ExposureOptions& options);
+
 struct RenderCommand {
   std::string input;
   std::string output;
@@ -75,7 +94,9 @@ struct RenderCommand {
   std::string size = "960x720";
   std::string light = "expressive";
   std::string terms;
-  std::string sun = "85,42";
+  DaylightOptions daylight;
+  ExposureOptions exposure;
+  int bands = 5;
   std::string camera = "auto";
   double fov_deg = 34.0;
   std::string background;

@@ -38,8 +38,7 @@ class FigureSet {
   FigureSet(const FiguresCommand& command, fs::path folder)
       : folder_(std::move(folder)), renderer_(command.device) {
     std::tie(view_.width, view_.height) = parseSize(command.size);
-    view_.sun_azimuth = 85.0f * kDegree;
-    view_.sun_elevation = 42.0f * kDegree;
+    view_.daylight = parseDaylight({});
   }
 
   Renderer& renderer() { return renderer_; }

@@ -74,6 +74,34 @@ void addDeviceOptions(CLI::App& command, DeviceOptions& device) {
   command.add_flag("--validation", device.validation, "Check the use of Vulkan (slow)");
 }
 
+void addDaylightOptions(CLI::App& command, DaylightOptions& daylight) {
+  command
+      .add_option("--sky", daylight.sky,
+                  "preetham; cie:1 (overcast) to cie:15; or a panorama, .exr or .hdr in kcd/m^2")
+      ->capture_default_str();
+  command.add_option("--sun", daylight.sun,
+                     "AZIMUTH,ELEVATION, degrees (azimuth 0: +Z, 90: +X) (default: 85,42)");
+  command.add_option("--date", daylight.date, "Time that says where the sun is: ISO 8601");
+  command.add_option("--place", daylight.place, "LATITUDE,LONGITUDE, degrees, with --date");
+  command.add_option("--turbidity", daylight.turbidity, "Haze of the air: 2 clear to 10 thick")
+      ->capture_default_str();
+}
+
+void addExposureOptions(CLI::App& command, ExposureOptions& exposure) {
+  command
+      .add_option("--exposure", exposure.exposure,
+                  "auto, or an exposure value at ISO 100 (15 in full sun)")
+      ->capture_default_str();
+  command.add_option("--key", exposure.key, "Brightness of the average, 0.09 dark to 0.36 light")
+      ->capture_default_str();
+  command
+      .add_option("--white", exposure.white,
+                  "Luminance of pure white, in averages times the key")
+      ->capture_default_str();
+  command.add_option("--bloom", exposure.bloom, "Share of light that the lens spreads, 0 to 1")
+      ->capture_default_str();
+}
+
 /// Prints one line, whatever bytes the names of files and parts hold.
 int fail(const std::string& message) {
   std::string line = "verdure: " + message;
@@ -150,16 +178,18 @@ int run(int argc, char** argv) {
   bake_app->add_flag("--json", bake.json, "Print the report as JSON");
 
   RenderCommand render;
-  CLI::App* render_app = app.add_subcommand("render", "Render a plant to a PNG");
+  CLI::App* render_app = app.add_subcommand("render", "Render a plant to a picture");
   render_app->add_option("file", render.input, "Plant: .glb .gltf .obj .fbx .dae .ply")->required();
-  render_app->add_option("-o,--output", render.output, "PNG to write")->required();
+  render_app->add_option("-o,--output", render.output, "File to write: .png, or .exr in kcd/m^2")->required();
   addLoadOptions(*render_app, render.load);
   render_app->add_option("--size", render.size, "WxH, pixels")->capture_default_str();
-  render_app->add_option("--light", render.light, "standard or expressive")->capture_default_str();
+  render_app->add_option("--light", render.light, "standard, expressive or transfer")->capture_default_str();
   render_app->add_option(
       "--terms", render.terms,
-      "Only these terms: ambient,diffuse,specular,shadow,textures (default: all)");
-  render_app->add_option("--sun", render.sun, "AZIMUTH,ELEVATION, degrees (azimuth 0: +Z, 90: +X)")
+      "Only these terms: ambient,diffuse,specular,shadow,textures,transmission");
+  addDaylightOptions(*render_app, render.daylight);
+  addExposureOptions(*render_app, render.exposure);
+  render_app->add_option("--bands", render.bands, "Bands of harmonics of the sky's light, 2 to 7")
       ->capture_default_str();
   render_app
       ->add_option("--camera", render.camera,

@@ -23,20 +23,22 @@ float radians(float degrees) {
 Terms parseTerms(const RenderCommand& command) {
   Terms terms = presetTerms(command.light);
   if (command.terms.empty()) return terms;
-  terms.ambient = terms.diffuse = terms.specular = terms.shadow = terms.textures = false;
+  terms.ambient = terms.diffuse = terms.specular = terms.shadow = terms.textures =
+      terms.transmission = false;
   std::size_t begin = 0;
   while (begin <= command.terms.size()) {
     const std::size_t end = std::min(command.terms.find(',', begin), command.terms.size());
     const std::string name = command.terms.substr(begin, end - begin);
-    bool* const term = name == "ambient"    ? &terms.ambient
-                       : name == "diffuse"  ? &terms.diffuse
-                       : name == "specular" ? &terms.specular
-                       : name == "shadow"   ? &terms.shadow
-                       : name == "textures" ? &terms.textures
-                                            : nullptr;
+    bool* const term = name == "ambient"        ? &terms.ambient
+                       : name == "diffuse"      ? &terms.diffuse
+                       : name == "specular"     ? &terms.specular
+                       : name == "shadow"       ? &terms.shadow
+                       : name == "textures"     ? &terms.textures
+                       : name == "transmission" ? &terms.transmission
+                                                : nullptr;
     if (term == nullptr)
       throw Error("--terms", fmt::format("'{}' is unknown", name),
-                  "use ambient, diffuse, specular, shadow, textures");
+                  "use ambient, diffuse, specular, shadow, textures, transmission");
     *term = true;
     begin = end + 1;
   }
@@ -125,9 +127,12 @@ void runRender(const RenderCommand& command) {
   View view;
   std::tie(view.width, view.height) = parseSize(command.size);
   view.terms = parseTerms(command);
-  const std::vector<float> sun = parseNumbers("--sun", command.sun, 2);
-  view.sun_azimuth = radians(sun[0]);
-  view.sun_elevation = radians(sun[1]);
+  view.daylight = parseDaylight(command.daylight);
+  view.exposure = parseExposure(command.exposure);
+  view.bloom = parseBloom(command.exposure);
+  if (command.bands < 2 || command.bands > 7)
+    throw Error("--bands", fmt::format("{} is out of range", command.bands), "choose 2 to 7");
+  view.sky_bands = command.bands;
   if (!(command.fov_deg > 0.0 && command.fov_deg < 170.0))
     throw Error("--fov", "must lie between 0 and 170 degrees", "34 is usual");
   if (!command.background.empty()) {
@@ -142,13 +147,23 @@ void runRender(const RenderCommand& command) {
     throw Error("--shadow-map", "must be at least 16 pixels", "2048 is usual");
   view.shadow_map_size = command.shadow_map;
   const DensityOptions bake_options = command.bake.checked();
-  checkOutput(command.output, {".png"});
+  checkOutput(command.output, {".png", ".exr"});
+  view.hdr = std::filesystem::path(command.output).extension() == ".exr";
 
   Progress progress("render");
   progress.show("device");
   Renderer renderer(command.device);
   progress.show("loading");
   Plant plant = loadPlant(command.input, command.load);
+  std::optional<PlantTransfer> transfer;
+  if (view.terms.ambient_source == AmbientSource::kTransfer) {
+    transfer = loadTransfer(command.input, plant);
+    if (!transfer)
+      throw Error(command.input,
+                  fmt::format("has no transfer vectors ({} is not there)",
+                              transferPath(command.input).string()),
+                  "trace them with verdure bake --transfer 5");
+  }
   // The file's own bake, or one made now; a light without baked terms needs neither.
   std::optional<CrownLight> light;
   if (!command.bake_again) light = lightOfFile(plant);
@@ -170,12 +185,16 @@ void runRender(const RenderCommand& command) {
   scene.ground = !command.no_ground;
   scene.ground_height = groundHeight(plant);
   scene.items.push_back({&plant, light ? &*light : nullptr});
+  if (transfer) scene.items[0].transfer = &*transfer;
   view.camera =
       parseCamera(command, scene, static_cast<float>(view.width) / static_cast<float>(view.height));
   progress.show("drawing");
   renderer.setScene(scene);
   const Frame frame = renderer.render(view);
-  writePng(frame.image, command.output);
+  if (view.hdr)
+    writeExr(frame.hdr, command.output);
+  else
+    writePng(frame.image, command.output);
   progress.show("done");
   if (command.json)
     fmt::print("{}\n",
@@ -186,12 +205,14 @@ void runRender(const RenderCommand& command) {
                                       {"pack_ms", frame.times.pack_ms},
                                       {"shadow_ms", frame.times.shadow_ms},
                                       {"color_ms", frame.times.color_ms},
+                                      {"tone_ms", frame.times.tone_ms},
+                                      {"average_kcd_m2", frame.average_luminance},
                                       {"validation_messages", renderer.validationMessages()}}
                    .dump(2));
   else
-    fmt::print("{}: {}x{}, {} light, on {}; shadow {:.1f} ms, colour {:.1f} ms\n", command.output,
-               view.width, view.height, command.light, renderer.deviceName(), frame.times.shadow_ms,
-               frame.times.color_ms);
+    fmt::print("{}: {}x{}, {} light, on {}; shadow {:.1f} ms, colour {:.1f} ms, tone {:.1f} ms\n",
+               command.output, view.width, view.height, command.light, renderer.deviceName(),
+               frame.times.shadow_ms, frame.times.color_ms, frame.times.tone_ms);
 }
 
 }  // namespace verdure::app

@@ -41,7 +41,7 @@ int run(int argc, char** argv) {
   renderer.setScene(scene);
 
   const char* const names[] = {"standard", "expressive"};
-  std::vector<double> shadow[2], color[2];
+  std::vector<double> shadow[2], color[2], tone[2];
   double pack_ms = 0.0;
   for (int frame = -2; frame < frames; ++frame)  // two rounds to warm up
     for (int k = 0; k < 2; ++k) {
@@ -52,13 +52,14 @@ int run(int argc, char** argv) {
       if (frame < 0) continue;
       shadow[which].push_back(times.shadow_ms);
       color[which].push_back(times.color_ms);
+      tone[which].push_back(times.tone_ms);
     }
   std::printf("%s, %d x %d, %zu triangles, %d frames each; pack and upload %.1f ms\n",
               renderer.deviceName().c_str(), view.width, view.height, triangleCount(tree), frames,
               pack_ms);
   for (int which = 0; which < 2; ++which)
-    std::printf("%-11s shadow %8.3f ms   color %8.3f ms\n", names[which], median(shadow[which]),
-                median(color[which]));
+    std::printf("%-11s shadow %8.3f ms   color %8.3f ms   tone %8.3f ms\n", names[which],
+                median(shadow[which]), median(color[which]), median(tone[which]));
   // Pairs of neighbouring frames share the machine's mood: the median of their ratios is steadier
   // than the ratio of the medians.
   std::vector<double> ratios;

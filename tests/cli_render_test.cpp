@@ -67,6 +67,22 @@ TEST_F(CommandLineRender, OptionsOfTheView) {
   EXPECT_EQ(
       difference(plain, picture(tree, {"--terms", "ambient,diffuse,specular,shadow,textures"})),
       0.0);
+  EXPECT_GT(difference(plain, picture(tree, {"--turbidity", "8"})), 1.0);
+  EXPECT_GT(difference(plain, picture(tree, {"--sky", "cie:1"})), 1.0);
+  HdrImage panorama(16, 8);
+  for (glm::vec3& p : panorama.rgb) p = {1.0f, 2.0f, 3.0f};
+  writeExr(panorama, path("sky.exr"));
+  EXPECT_GT(difference(plain, picture(tree, {"--sky", path("sky.exr")})), 1.0);
+  EXPECT_GT(difference(plain, picture(tree, {"--date", "2026-06-21T16:00Z", "--place", "51,0"})),
+            0.1);
+  EXPECT_GT(difference(plain, picture(tree, {"--key", "0.36"})), 5.0);
+  EXPECT_GT(difference(plain, picture(tree, {"--exposure", "12"})), 5.0);
+  EXPECT_GT(difference(plain, picture(tree, {"--white", "1"})), 0.5);
+  EXPECT_GT(difference(plain, picture(tree, {"--bloom", "0.5"})), 0.5);
+  EXPECT_GT(difference(plain, picture(tree, {"--terms",
+                                             "ambient,diffuse,specular,shadow,textures,"
+                                             "transmission"})),
+            0.01);
   // Without any ground the background alone is seen away from the plant.
   const Image red = picture(tree, {"--no-ground", "--background", "1,0,0"});
   for (const int x : {0, 95})
@@ -81,6 +97,30 @@ TEST_F(CommandLineRender, OptionsOfTheView) {
       picture(tree, {"--no-ground", "--background", "0,0,1", "--camera", "0,2,50,0,2,100"});
   EXPECT_EQ(mean(empty, 0), 0.0);
   EXPECT_EQ(mean(empty, 2), 255.0);
+}
+
+TEST_F(CommandLineRender, WritesLightAsOpenExr) {
+  const std::string tree = smallTree();
+  const auto average = [&](const Words& options) {
+    Words command = {"render", tree,    "-o",           path("out.exr"), "--size",
+                     "96x72",  "--sun", "85,42",        "--shadow-map",  "256",
+                     "--json", "--light", "standard"};
+    command.insert(command.end(), options.begin(), options.end());
+    const Json report = Json::parse(runWell(command));
+    const HdrImage image = readHdrImage(path("out.exr"));
+    EXPECT_EQ(image.width, 96);
+    EXPECT_EQ(image.height, 72);
+    double sum = 0.0;
+    for (const glm::vec3& p : image.rgb)
+      sum += std::log(double{0.2126f * p.r + 0.7152f * p.g + 0.0722f * p.b} + 1e-9);
+    return std::pair(std::exp(sum / (96.0 * 72.0)), report["average_kcd_m2"].get<double>());
+  };
+  const auto [day, said] = average({});
+  EXPECT_NEAR(day, said, 0.01 * day);
+  EXPECT_GT(day, 0.5);  // kcd/m^2: a sunny day
+  EXPECT_LT(day, 20.0);
+  // The file knows no exposure.
+  EXPECT_NEAR(average({"--exposure", "5", "--key", "0.5", "--bloom", "1"}).first, day, 1e-6 * day);
 }
 
 TEST_F(CommandLineRender, StandsOnZeroWhereAStrandHangsBelow) {
@@ -122,6 +162,24 @@ TEST_F(CommandLineRender, Refuses) {
   refused({"--sun", "abc"}, {"--sun: 'abc' is no list of numbers; separate them by commas"});
   refused({"--sun", "1"}, {"--sun: '1' has 1 numbers; write 2"});
   refused({"--sun", "1,nan"}, {"--sun: "});
+  refused({"--sun", "10,-30"}, {"--sun: at an elevation of -30 degrees it is night"});
+  refused({"--sun", "10,130"}, {"--sun: the elevation 130"});
+  refused({"--turbidity", "50"}, {"turbidity"});
+  refused({"--turbidity", "nan"}, {"turbidity"});
+  refused({"--sky", "green"}, {"--sky: 'green' is unknown"});
+  refused({"--bands", "9"}, {"--bands: 9 is out of range"});
+  refused({"--exposure", "bright"}, {"--exposure: 'bright' is no number"});
+  refused({"--exposure", "99"}, {"--exposure: 99 is out of range"});
+  refused({"--key", "0"}, {"--key: 0 is out of range"});
+  refused({"--white", "-1"}, {"--white: -1 is out of range"});
+  refused({"--bloom", "2"}, {"--bloom: 2 is out of range"});
+  refused({"--light", "transfer"}, {"no transfer vectors", "bake --transfer"});
+  refused({"--sky", "cie:16"}, {"--sky: 'cie:16' is no CIE standard sky"});
+  refused({"--sky", "none.exr"}, {"none.exr"});
+  refused({"--date", "2026-06-21T12:30Z"}, {"--date: ", "--place"});
+  refused({"--date", "2026-06-21T00:30Z", "--place", "51,0"}, {"sun"});  // at night
+  refused({"--date", "yesterday", "--place", "51,0"}, {"yesterday"});
+  refused({"--date", "2026-06-21T12:30Z", "--place", "51,0", "--sun", "1,2"}, {"--sun: "});
   refused({"--camera", "1,2,3"}, {"--camera: needs 2 or 6 numbers"});
   refused({"--camera", "1,2,3,1,2,3"}, {"same point"});
   refused({"--fov", "0"}, {"--fov: "});

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 #include <memory>
 
 #include "render/look.h"
@@ -12,6 +13,7 @@
 #include "scene/camera.h"
 #include "shared/color.h"
 #include "shared/illumination.h"
+#include "shared/tone.h"
 #include "test_plants.h"
 #include "verdure/error.h"
 #include "verdure/render.h"
@@ -79,20 +81,45 @@ inline Scene itemScene(const Plant& plant, const CrownLight* light) {
   return scene;
 }
 
+/// The sun in a direction, with irradiance / pi `light` on what faces it.
+inline void setSun(View& view, const glm::vec3& direction, const glm::vec3& light) {
+  Sun& sun = view.daylight.sun;
+  sun.direction = direction;
+  sun.luminance = light / std::pow(std::sin(sun.angular_radius), 2.0f);
+}
+inline void setSun(View& view, float azimuth, float elevation, const glm::vec3& light) {
+  setSun(view, directionOf(azimuth, elevation), light);
+}
+inline void turnSun(View& view, float azimuth, float elevation) {
+  view.daylight.sun.direction = directionOf(azimuth, elevation);
+}
+
+/// Irradiance / pi of a surface that faces the sun.
+inline glm::vec3 sunLight(const View& view) {
+  return view.daylight.sun.illuminance() / glm::pi<float>();
+}
+
+/// The same luminance from all directions, also from below: irradiance / pi everywhere.
+inline void setFurnace(View& view, const glm::vec3& luminance) {
+  view.daylight.sky = uniformSky(luminance, luminance);
+}
+
+/// The default day.
 inline View smallView(int width, int height) {
   View view;
   view.width = width;
   view.height = height;
   view.shadow_map_size = 256;
+  view.hdr = true;
   return view;
 }
 
-/// Looks at whiteQuad(), which fills the middle. The sun is white and dim enough not to clip.
+/// Looks at whiteQuad(), which fills the middle, in the light of a sun and a dim furnace.
 inline View quadView() {
   View view = smallView(64, 48);
   view.camera = {{0, 0, 5}, {0, 0, 0}, 0.3f};
-  view.sun_color = {0.9f, 0.8f, 0.6f};
-  view.ambient_color = {0.1f, 0.1f, 0.1f};
+  setSun(view, 0.9f, 0.75f, {0.9f, 0.8f, 0.6f});
+  setFurnace(view, {0.1f, 0.2f, 0.3f});
   view.background = glm::vec3(0.0f);
   return view;
 }
@@ -120,32 +147,38 @@ inline glm::ivec2 pixelOf(const View& view, const glm::vec3& point) {
           static_cast<int>(0.5f * static_cast<float>(view.height) - glm::dot(d, up) * scale)};
 }
 
-/// (1) with the renderer's coefficients for foliage, from the shared formula.
+/// (1) with the renderer's coefficients for foliage in a furnace, from the shared formula.
 inline glm::vec3 expectedLeafColor(const View& view, const glm::vec3& color, float k,
                                    const glm::vec3& normal, const glm::vec3& point) {
-  const glm::vec3 l = directionOf(view.sun_azimuth, view.sun_elevation);
+  const glm::vec3 l = view.daylight.sun.direction;
   const glm::vec3 v = glm::normalize(view.camera.eye - point);
-  return shared::illumination(view.ambient_color, color * k, view.sun_color, 1.0f, color,
-                              shared::diffuseFactor(normal, l), look::kLeafSpecular,
+  return shared::illumination(view.daylight.sky->luminance({0, 1, 0}) * color * k, sunLight(view),
+                              1.0f, color * shared::diffuseFactor(normal, l), look::kLeafSpecular,
                               shared::specularFactor(normal, l, v, look::kLeafExponent));
 }
 
-inline void expectPixel(const Image& image, int x, int y, const glm::vec3& linear) {
+/// kcd/m^2, to the precision of half floats.
+inline void expectPixel(const HdrImage& image, int x, int y, const glm::vec3& luminance,
+                        float relative = 1e-3f) {
   for (int c = 0; c < 3; ++c)
-    EXPECT_NEAR(static_cast<float>(image.at(x, y)[c]),
-                255.0f * shared::srgbFromLinear(std::clamp(linear[c], 0.0f, 1.0f)), 1.0f)
+    EXPECT_NEAR(image.at(x, y)[c], luminance[c], relative * luminance[c] + 1e-6f)
         << "pixel " << x << ", " << y << ", channel " << c;
 }
 
-/// Pixels that differ by more than `most` in a channel.
-inline int countDifferent(const Image& a, const Image& b, int most) {
+/// Luminance, kcd/m^2.
+inline float luminanceAt(const HdrImage& image, int x, int y) {
+  return shared::luminanceOf(image.at(x, y));
+}
+
+/// Pixels that differ by more than `most` (a share) in luminance.
+inline int countDifferent(const HdrImage& a, const HdrImage& b, float most) {
   int count = 0;
-  for (std::size_t i = 0; i < a.rgba.size(); i += 4) {
-    int worst = 0;
-    for (std::size_t c = 0; c < 3; ++c)
-      worst = std::max(worst, std::abs(int{a.rgba[i + c]} - int{b.rgba[i + c]}));
-    count += worst > most ? 1 : 0;
-  }
+  for (int y = 0; y < a.height; ++y)
+    for (int x = 0; x < a.width; ++x)
+      count += std::abs(luminanceAt(a, x, y) - luminanceAt(b, x, y)) >
+                       most * std::max(luminanceAt(a, x, y), luminanceAt(b, x, y))
+                   ? 1
+                   : 0;
   return count;
 }
 
@@ -162,8 +195,8 @@ class RenderTest : public testing::Test {
   static void setItem(const Plant& plant, const CrownLight* light) {
     renderer().setScene(itemScene(plant, light));
   }
-  static void expectCenter(const View& view, const glm::vec3& linear) {
-    expectPixel(renderer().render(view).image, view.width / 2, view.height / 2, linear);
+  static void expectCenter(const View& view, const glm::vec3& luminance) {
+    expectPixel(renderer().render(view).hdr, view.width / 2, view.height / 2, luminance);
   }
 };
 

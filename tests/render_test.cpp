@@ -6,6 +6,7 @@
 #include "base/files.h"
 #include "render_fixture.h"
 #include "scene/camera.h"
+#include "shared/leaf.h"
 #include "verdure/compare.h"
 
 namespace verdure {
@@ -19,6 +20,8 @@ TEST(Terms, PresetsAreThePublishedCombinations) {
   EXPECT_EQ(presetTerms("expressive").normal, NormalSource::kCrown);
   EXPECT_EQ(presetTerms("expressive").ambient_source, AmbientSource::kBaked);
   for (const std::string& name : presetNames()) EXPECT_NO_THROW(presetTerms(name));
+  EXPECT_EQ(presetTerms("transfer").ambient_source, AmbientSource::kTransfer);
+  EXPECT_TRUE(presetTerms("transfer").transmission);
   EXPECT_THROW(presetTerms("impressive"), Error);
 }
 
@@ -34,13 +37,19 @@ TEST_F(Render, EveryTermIsSilentUnderValidation) {
   view.camera = automaticCamera(scene, 0.3f, 0.1f, 4.0f / 3.0f);
   view.shadow_map_size = 128;
   for (const std::string& name : presetNames())
-    for (int off = 0; off < 7; ++off) {
+    for (int off = 0; off < 9; ++off) {
       view.terms = presetTerms(name);
       bool* const switches[] = {&view.terms.ambient, &view.terms.diffuse, &view.terms.specular,
                                 &view.terms.shadow, &view.terms.textures};
       if (off < 5) *switches[off] = false;
       if (off == 5)
         for (bool* s : switches) *s = false;
+      view.daylight = off == 7   ? Daylight{uniformSky(glm::vec3(2.0f)), {}}
+                      : off == 8 ? Daylight{}
+                                 : preethamDaylight(3.0f, directionOf(0.9f, 0.75f));
+      view.hdr = off % 2 == 0;
+      view.bloom = off == 3 ? 0.0f : 0.05f;
+      view.exposure.ev = off == 4 ? std::optional(14.0f) : std::nullopt;
       renderer().render(view);
     }
   view.background = glm::vec3(0.2f);
@@ -56,11 +65,12 @@ TEST_F(Render, AmbientAloneIsExact) {
   const CrownLight light = uniformLight(quad, {0, 0, 1}, 0.6f);
   View view = quadView();
   view.terms.diffuse = view.terms.specular = view.terms.shadow = false;
-  view.ambient_color = {0.5f, 0.25f, 0.125f};
+  const glm::vec3 sky(0.5f, 0.25f, 0.125f);
+  setFurnace(view, sky);
   setItem(quad, &light);
-  expectCenter(view, view.ambient_color * 0.6f);
+  expectCenter(view, sky * 0.6f);
   view.terms.ambient_source = AmbientSource::kConstant;
-  expectCenter(view, view.ambient_color);
+  expectCenter(view, sky);
   view.terms.ambient = false;
   expectCenter(view, glm::vec3(0.0f));
   // Least coefficient: the normal's length is 1/255, its direction stays.
@@ -68,12 +78,11 @@ TEST_F(Render, AmbientAloneIsExact) {
   setItem(quad, &dark);
   view.terms.ambient = true;
   view.terms.ambient_source = AmbientSource::kBaked;
-  expectCenter(view, view.ambient_color / 255.0f);
+  expectPixel(renderer().render(view).hdr, 32, 24, sky / 255.0f, 6e-3f);  // 16 bits a component
   view.terms.ambient = false;
   view.terms.diffuse = true;
-  view.sun_azimuth = 0.0f;
-  view.sun_elevation = 0.5f;
-  expectCenter(view, view.sun_color * std::cos(0.5f));
+  turnSun(view, 0.0f, 0.5f);
+  expectCenter(view, sunLight(view) * std::cos(0.5f));
 }
 
 TEST_F(Render, DiffuseFollowsTheCosine) {
@@ -83,14 +92,12 @@ TEST_F(Render, DiffuseFollowsTheCosine) {
   view.terms.ambient = view.terms.specular = view.terms.shadow = false;
   view.terms.normal = NormalSource::kLeaf;
   for (const float elevation : {0.0f, 0.3f, 0.7f, 1.1f, 1.5f}) {
-    view.sun_azimuth = 0.0f;
-    view.sun_elevation = elevation;
-    expectCenter(view, view.sun_color * std::cos(elevation));
+    turnSun(view, 0.0f, elevation);
+    expectCenter(view, sunLight(view) * std::cos(elevation));
   }
   for (const float azimuth : {-1.2f, 0.4f, 2.0f}) {  // the last is behind the quad
-    view.sun_azimuth = azimuth;
-    view.sun_elevation = 0.2f;
-    expectCenter(view, view.sun_color * std::max(0.0f, std::cos(azimuth) * std::cos(0.2f)));
+    turnSun(view, azimuth, 0.2f);
+    expectCenter(view, sunLight(view) * std::max(0.0f, std::cos(azimuth) * std::cos(0.2f)));
   }
 }
 
@@ -99,8 +106,7 @@ TEST_F(Render, LeafNormalsAreTwoSidedAndCrownNormalsAreNot) {
   const CrownLight light = uniformLight(quad, {0, 0, 1}, 1.0f);
   View view = quadView();
   view.terms.ambient = view.terms.specular = view.terms.shadow = false;
-  view.sun_elevation = 0.4f;
-  const glm::vec3 lit = view.sun_color * std::cos(0.4f);
+  const glm::vec3 lit = sunLight(view) * std::cos(0.4f);
   for (const bool mirrored : {false, true}) {
     Scene scene = itemScene(quad, &light);
     if (mirrored) scene.items[0].world_from_plant = {glm::scale(glm::mat4(1), {-1, 1, 1})};
@@ -108,7 +114,7 @@ TEST_F(Render, LeafNormalsAreTwoSidedAndCrownNormalsAreNot) {
     for (const bool behind : {false, true}) {
       view.camera.eye.z = behind ? -5.0f : 5.0f;
       for (const bool sun_behind : {false, true}) {
-        view.sun_azimuth = sun_behind ? glm::pi<float>() : 0.0f;
+        turnSun(view, sun_behind ? glm::pi<float>() : 0.0f, 0.4f);
         view.terms.normal = NormalSource::kLeaf;
         expectCenter(view, sun_behind == behind ? lit : glm::vec3(0.0f));
         view.terms.normal = NormalSource::kCrown;
@@ -116,6 +122,28 @@ TEST_F(Render, LeafNormalsAreTwoSidedAndCrownNormalsAreNot) {
       }
     }
   }
+}
+
+TEST_F(Render, LeavesShowTheLightOnTheirFarSide) {
+  const glm::vec3 green(0.1f, 0.3f, 0.05f);
+  const Plant quad = whiteQuad(glm::vec4(green, 1.0f));
+  setItem(quad, nullptr);
+  View view = quadView();
+  view.terms = presetTerms("standard");
+  view.terms.specular = false;
+  view.terms.transmission = true;
+  const glm::vec3 sky = view.daylight.sky->luminance({0, 1, 0});
+  const glm::vec3 through = shared::leafTransmittance(green);
+  for (const bool sun_behind : {false, true}) {
+    turnSun(view, sun_behind ? glm::pi<float>() : 0.0f, 0.4f);
+    expectCenter(view, sky * (green + through) +
+                           sunLight(view) * std::cos(0.4f) * (sun_behind ? through : green));
+  }
+  // Wood lets nothing through.
+  Plant wood = quad;
+  wood.meshes[0].kind = PartKind::kWood;
+  setItem(wood, nullptr);
+  expectCenter(view, sky * green);
 }
 
 TEST_F(Render, PixelsEqualTheSharedFormula) {
@@ -126,16 +154,14 @@ TEST_F(Render, PixelsEqualTheSharedFormula) {
   const CrownLight light = uniformLight(quad, normal, k);
   setItem(quad, &light);
   View view = quadView();
-  view.sun_azimuth = 0.5f;
-  view.sun_elevation = 0.6f;
-  const Image image = renderer().render(view).image;
+  turnSun(view, 0.5f, 0.6f);
+  const HdrImage image = renderer().render(view).hdr;
   for (const int x : {20, 32, 44})
     for (const int y : {18, 24, 30}) {
       // The quad lies in z = 0.
       const glm::vec3 ray = pixelRay(view, x, y);
       const glm::vec3 point = view.camera.eye - ray * (view.camera.eye.z / ray.z);
-      const glm::vec3 expected = expectedLeafColor(view, {0.3f, 0.5f, 0.2f}, k, normal, point);
-      expectPixel(image, x, y, expected);
+      expectPixel(image, x, y, expectedLeafColor(view, {0.3f, 0.5f, 0.2f}, k, normal, point));
     }
 }
 
@@ -149,13 +175,12 @@ TEST_F(Render, ShadowLiesWhereTheSunRaySays) {
   view.terms.textures = false;
   view.shadow_map_size = 512;
   for (const float azimuth : {0.9f, 3.5f, 5.3f}) {
-    view.sun_azimuth = azimuth;
-    view.sun_elevation = 0.9f;
-    view.terms.shadow = true;
-    const Image with = renderer().render(view).image;
-    view.terms.shadow = false;
-    const Image without = renderer().render(view).image;
     const glm::vec3 to_sun = directionOf(azimuth, 0.9f);
+    view.daylight = preethamDaylight(3.0f, to_sun);
+    view.terms.shadow = true;
+    const HdrImage with = renderer().render(view).hdr;
+    view.terms.shadow = false;
+    const HdrImage without = renderer().render(view).hdr;
     int inside = 0, outside = 0;
     for (int y = 0; y < view.height; ++y)
       for (int x = 0; x < view.width; ++x) {
@@ -166,12 +191,12 @@ TEST_F(Render, ShadowLiesWhereTheSunRaySays) {
         const glm::vec3 ground = view.camera.eye - ray * (view.camera.eye.y / ray.y);
         const glm::vec3 above = ground + to_sun * (2.0f / to_sun.y);
         const float reach = std::max(std::abs(above.x), std::abs(above.z));
-        const int drop = int{without.at(x, y)[1]} - int{with.at(x, y)[1]};
+        const float left = luminanceAt(with, x, y) / luminanceAt(without, x, y);
         if (reach < 0.4f) {
-          EXPECT_GT(drop, 25) << x << " " << y;
+          EXPECT_LT(left, 0.4f) << x << " " << y;
           ++inside;
         } else if (reach > 0.6f) {
-          EXPECT_EQ(drop, 0) << x << " " << y;
+          EXPECT_EQ(left, 1.0f) << x << " " << y;
           ++outside;
         }
       }
@@ -191,12 +216,11 @@ TEST_F(Render, SurfacesDoNotShadeThemselves) {
     setItem(*plant, nullptr);
     for (const float azimuth : {-1.3f, -0.6f, 0.0f, 0.8f, 1.4f})
       for (const float elevation : {0.1f, 0.7f, 1.3f}) {
-        view.sun_azimuth = azimuth;
-        view.sun_elevation = elevation;
+        turnSun(view, azimuth, elevation);
         view.terms.shadow = true;
-        const Image with = renderer().render(view).image;
+        const HdrImage with = renderer().render(view).hdr;
         view.terms.shadow = false;
-        EXPECT_EQ(countDifferent(with, renderer().render(view).image, 3), 0)
+        EXPECT_EQ(countDifferent(with, renderer().render(view).hdr, 0.02f), 0)
             << "sun at " << azimuth << ", " << elevation;
       }
   }
@@ -210,17 +234,50 @@ TEST_F(Render, NoLightLeaksAtTheFootOfATrunk) {
   View view = smallView(160, 120);
   view.terms.textures = false;
   view.shadow_map_size = 512;
-  view.sun_azimuth = 2.5f;
-  view.sun_elevation = 0.8f;
+  view.daylight = preethamDaylight(3.0f, directionOf(2.5f, 0.8f));
   view.camera = {{0.0f, 3.0f, 3.0f}, {0.0f, 0.3f, 0.0f}, 0.5f};
   const glm::vec3 away = -glm::normalize(directionOf(2.5f, 0.0f));
-  const Image with = renderer().render(view).image;
+  const HdrImage with = renderer().render(view).hdr;
   view.terms.shadow = false;
-  const Image without = renderer().render(view).image;
+  const HdrImage without = renderer().render(view).hdr;
   for (const float distance : {0.22f, 0.25f, 0.3f, 0.5f, 0.8f}) {
     const glm::ivec2 p = pixelOf(view, away * distance);
-    EXPECT_GT(int{without.at(p.x, p.y)[1]} - int{with.at(p.x, p.y)[1]}, 25) << distance;
+    EXPECT_LT(luminanceAt(with, p.x, p.y), 0.4f * luminanceAt(without, p.x, p.y)) << distance;
   }
+}
+
+TEST_F(Render, EdgesCastEvenHalfShadows) {
+  // The shadow of a lone straight edge on the ground: from full light to none without a step back,
+  // half at the edge itself.
+  const Plant card = horizontalCard(1.0f, 4.0f);
+  Scene scene = itemScene(card, nullptr);
+  scene.ground = true;
+  renderer().setScene(scene);
+  View view = smallView(400, 100);
+  view.terms = presetTerms("standard");
+  view.terms.ambient = view.terms.textures = false;
+  view.shadow_map_size = 128;
+  setSun(view, {0, 1, 0}, glm::vec3(1.0f));
+  view.daylight.sky = nullptr;
+  // Straight down past the card at the edge x = 2, from below its height.
+  view.camera = {{2.0f, 0.9f, 0.001f}, {2.0f, 0.0f, 0.0f}, 2.0f * std::atan(0.1f)};
+  const HdrImage image = renderer().render(view).hdr;
+  std::vector<double> profile(400, 0.0);  // mean along the edge
+  for (int x = 0; x < 400; ++x)
+    for (int y = 0; y < 100; ++y)
+      profile[static_cast<std::size_t>(x)] += double{image.at(x, y).g} / 0.18 / 100.0;
+  EXPECT_NEAR(profile.front(), 0.0, 1e-3);
+  EXPECT_NEAR(profile.back(), 1.0, 2e-3);
+  double lit = 0.0;
+  for (std::size_t x = 1; x < 400; ++x) {
+    EXPECT_GT(profile[x], profile[x - 1] - 0.02) << x;
+    lit += profile[x];
+  }
+  // The edge lies in the middle; a texel of the map is 4.3 m / 128 = 0.033 m wide or 19 pixels.
+  EXPECT_NEAR(lit / 400.0, 0.5, 0.02);
+  double at_edge = 0.0;
+  for (std::size_t x = 190; x < 210; ++x) at_edge += profile[x] / 20.0;
+  EXPECT_NEAR(at_edge, 0.5, 0.06);
 }
 
 TEST_F(Render, AlphaCutCardsKeepTheirCoverageAtAnyDistance) {
@@ -239,7 +296,7 @@ TEST_F(Render, AlphaCutCardsKeepTheirCoverageAtAnyDistance) {
   renderer().setScene(scene);
   View view = smallView(240, 240);
   view.background = glm::vec3(0.0f);
-  view.ambient_color = glm::vec3(1.0f);
+  setFurnace(view, glm::vec3(1.0f));
   view.terms = {.diffuse = false, .specular = false, .shadow = false};
   for (const float card_pixels : {33.0f, 17.3f, 9.1f, 5.2f, 2.9f}) {
     const float distance = 20.0f;
@@ -247,11 +304,9 @@ TEST_F(Render, AlphaCutCardsKeepTheirCoverageAtAnyDistance) {
     view.camera.target = {0, 0, 0};
     view.camera.vertical_fov =
         2.0f * std::atan(0.5f * static_cast<float>(view.height) / card_pixels / distance);
-    const Image image = renderer().render(view).image;
+    const HdrImage image = renderer().render(view).hdr;
     double covered = 0.0;
-    for (std::size_t i = 0; i < image.rgba.size(); i += 4)
-      covered +=
-          static_cast<double>(shared::linearFromSrgb(static_cast<float>(image.rgba[i]) / 255.0f));
+    for (const glm::vec3& pixel : image.rgb) covered += static_cast<double>(pixel.r);
     const double area = 36.0 * static_cast<double>(card_pixels) * static_cast<double>(card_pixels);
     EXPECT_NEAR(covered / area, truth, 0.1 * truth) << card_pixels << " pixels a card";
   }
@@ -316,6 +371,21 @@ TEST_F(Render, BadInputIsRefused) {
   EXPECT_THROW(renderer().render(view), Error);
   view = quadView();
   view.shadow_map_size = 0;
+  EXPECT_THROW(renderer().render(view), Error);
+  view = quadView();
+  view.sky_bands = 8;
+  EXPECT_THROW(renderer().render(view), Error);
+  view = quadView();
+  view.bloom = 1.5f;
+  EXPECT_THROW(renderer().render(view), Error);
+  view = quadView();
+  view.exposure.key = 0.0f;
+  EXPECT_THROW(renderer().render(view), Error);
+  view = quadView();
+  view.exposure.white = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_THROW(renderer().render(view), Error);
+  view = quadView();
+  view.daylight.sun.direction = {0, 2, 0};
   EXPECT_THROW(renderer().render(view), Error);
   view = quadView();
   view.camera.target = view.camera.eye;

@@ -7,6 +7,7 @@
 #include "shared/sh.h"
 #include "shared/sky.h"
 #include "shared/sky_formula.h"
+#include "shared/tone.h"
 
 // Every shared function of the renderer, called with eight numbers in [0, 1]: compiled as C++ and
 // as GLSL, so that one test compares both.
@@ -17,12 +18,14 @@ struct SharedResults {
   vec4 density;    // metaball, ambientCoefficient, length of encodeNormal, k of decodeNormal
   vec4 normal;     // direction of decodeNormal, hazeShare
   vec4 light;      // illumination, specularFactor
-  vec4 sky;        // skyColor, diffuseFactor
+  vec4 sky;        // domeDirection, diffuseFactor
   vec4 transfer;   // srgbFromLinear, linearFromSrgb, ground's mean
   vec4 formula;    // skyLuminance
   vec4 harmonics;  // shIrradiance
+  vec4 tone;       // toneMapped, ditheredLevel / 256
+  vec4 dome;       // domeCoordinates, reinhard, luminanceOf
 };
-SHARED_SIZE(SharedResults, 112);
+SHARED_SIZE(SharedResults, 144);
 
 SHARED_FUNCTION SharedResults evaluateShared(vec4 a, vec4 b) {
   vec3 n = normalize(vec3(a.x - 0.5f, a.y - 0.5f, a.z - 0.45f));
@@ -34,15 +37,15 @@ SHARED_FUNCTION SharedResults evaluateShared(vec4 a, vec4 b) {
   float diffuse = diffuseFactor(n, l);
   float specular = specularFactor(n, l, v, 1.0f + 20.0f * b.x);
   vec3 color = vec3(a.w, b.w, b.z);
-  vec3 lit = illumination(vec3(0.4f, 0.5f, 0.6f), color * k, vec3(1.7f, 1.6f, 1.4f), b.y, color,
-                          diffuse, 0.06f, specular);
-  vec3 sky = skyColor(l, vec3(0.7f, 0.8f, 0.9f), vec3(0.1f, 0.3f, 0.7f));
+  vec3 lit = illumination(vec3(0.4f, 0.5f, 0.6f) * k, vec3(1.7f, 1.6f, 1.4f), b.y, color * diffuse,
+                          0.06f, specular);
+  vec3 dome = domeDirection(l);
   vec3 mean = groundMeanColor();
   SharedResults r;
   r.density = vec4(metaball(1.2f * a.x), k, length(encoded), decoded.w);
   r.normal = vec4(decoded.x, decoded.y, decoded.z, hazeShare(300.0f * a.x, 20.0f + 50.0f * a.y));
   r.light = vec4(lit, specular);
-  r.sky = vec4(sky, diffuse);
+  r.sky = vec4(dome, diffuse);
   r.transfer = vec4(srgbFromLinear(a.x), linearFromSrgb(a.x), mean.x, mean.y + mean.z);
   SkyFormula formula;
   formula.sun = vec4(n.x, n.y, n.z, 0.0f);
@@ -59,6 +62,11 @@ SHARED_FUNCTION SharedResults evaluateShared(vec4 a, vec4 b) {
     weights[i] = a * cos(1.3f * float(i)) + b * cos(2.9f * float(i));
   }
   r.harmonics = vec4(shIrradiance(n, weights), 0.0f);
+  vec3 bright = vec3(4.0f * a.x * a.x, 9.0f * a.y * a.y, 4.0f * a.z * a.z);
+  vec2 at = domeCoordinates(dome);
+  r.tone = vec4(toneMapped(bright, 1.0f + 4.0f * b.w),
+                ditheredLevel(floor(256.0f * b.x) / 255.0f, b.y) / 256.0f);
+  r.dome = vec4(at.x, at.y, reinhard(9.0f * a.y, 0.5f + b.w), luminanceOf(bright));
   return r;
 }
 

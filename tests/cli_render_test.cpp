@@ -102,8 +102,8 @@ TEST_F(CommandLineRender, OptionsOfTheView) {
 TEST_F(CommandLineRender, WritesLightAsOpenExr) {
   const std::string tree = smallTree();
   const auto average = [&](const Words& options) {
-    Words command = {"render", tree,    "-o",           path("out.exr"), "--size",
-                     "96x72",  "--sun", "85,42",        "--shadow-map",  "256",
+    Words command = {"render", tree,      "-o",      path("out.exr"), "--size",
+                     "96x72",  "--sun",   "85,42",   "--shadow-map",  "256",
                      "--json", "--light", "standard"};
     command.insert(command.end(), options.begin(), options.end());
     const Json report = Json::parse(runWell(command));

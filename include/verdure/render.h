@@ -84,7 +84,8 @@ struct Frame {
   /// kcd/m^2, unexposed and without bloom: the plain average over each pixel. Halves (11 bits) of a
   /// range that the daylight sets. Background is black. Empty unless View::hdr.
   HdrImage hdr;
-  float average_luminance = 0.0f;  ///< kcd/m^2: log-average of the picture, or what the EV stands for
+  float average_luminance =
+      0.0f;  ///< kcd/m^2: log-average of the picture, or what the EV stands for
   FrameTimes times;
 };
 

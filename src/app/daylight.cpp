@@ -36,9 +36,10 @@ glm::vec3 sunDirection(const DaylightOptions& options) {
     throw Error("--sun", fmt::format("the elevation {:g} is no angle above a horizon", sun[1]),
                 "write AZIMUTH,ELEVATION in degrees");
   if (sun[1] < kLowestSun_deg)
-    throw Error("--sun",
-                fmt::format("at an elevation of {:g} degrees it is night, and all is black", sun[1]),
-                fmt::format("choose {:g} or more", kLowestSun_deg));
+    throw Error(
+        "--sun",
+        fmt::format("at an elevation of {:g} degrees it is night, and all is black", sun[1]),
+        fmt::format("choose {:g} or more", kLowestSun_deg));
   return directionOf(sun[0] * kDegree, sun[1] * kDegree);
 }
 

@@ -95,8 +95,7 @@ void addExposureOptions(CLI::App& command, ExposureOptions& exposure) {
   command.add_option("--key", exposure.key, "Brightness of the average, 0.09 dark to 0.36 light")
       ->capture_default_str();
   command
-      .add_option("--white", exposure.white,
-                  "Luminance of pure white, in averages times the key")
+      .add_option("--white", exposure.white, "Luminance of pure white, in averages times the key")
       ->capture_default_str();
   command.add_option("--bloom", exposure.bloom, "Share of light that the lens spreads, 0 to 1")
       ->capture_default_str();
@@ -180,13 +179,14 @@ int run(int argc, char** argv) {
   RenderCommand render;
   CLI::App* render_app = app.add_subcommand("render", "Render a plant to a picture");
   render_app->add_option("file", render.input, "Plant: .glb .gltf .obj .fbx .dae .ply")->required();
-  render_app->add_option("-o,--output", render.output, "File to write: .png, or .exr in kcd/m^2")->required();
+  render_app->add_option("-o,--output", render.output, "File to write: .png, or .exr in kcd/m^2")
+      ->required();
   addLoadOptions(*render_app, render.load);
   render_app->add_option("--size", render.size, "WxH, pixels")->capture_default_str();
-  render_app->add_option("--light", render.light, "standard, expressive or transfer")->capture_default_str();
-  render_app->add_option(
-      "--terms", render.terms,
-      "Only these terms: ambient,diffuse,specular,shadow,textures,transmission");
+  render_app->add_option("--light", render.light, "standard, expressive or transfer")
+      ->capture_default_str();
+  render_app->add_option("--terms", render.terms,
+                         "Only these terms: ambient,diffuse,specular,shadow,textures,transmission");
   addDaylightOptions(*render_app, render.daylight);
   addExposureOptions(*render_app, render.exposure);
   render_app->add_option("--bands", render.bands, "Bands of harmonics of the sky's light, 2 to 7")

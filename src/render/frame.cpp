@@ -22,7 +22,8 @@ gpu::SetLayout makeFrameSet(const gpu::Device& device) {
   using Type = vk::DescriptorType;
   using Stage = vk::ShaderStageFlagBits;
   const Type image = Type::eCombinedImageSampler;
-  return {device, {Type::eUniformBuffer, image, image, image, image, image},
+  return {device,
+          {Type::eUniformBuffer, image, image, image, image, image},
           Stage::eVertex | Stage::eFragment};
 }
 

@@ -18,8 +18,8 @@ struct Grid {
     constexpr float kFade = 0.1f;  // of the grid's side
     const float last = static_cast<float>(size - 1);
     if (!(at.x >= 0.0f && at.y >= 0.0f && at.x <= last && at.y <= last)) return open;
-    const glm::vec2 inside = glm::smoothstep(glm::vec2(0.0f), glm::vec2(kFade),
-                                             0.5f - glm::abs(at / last - 0.5f));
+    const glm::vec2 inside =
+        glm::smoothstep(glm::vec2(0.0f), glm::vec2(kFade), 0.5f - glm::abs(at / last - 0.5f));
     const glm::ivec2 low = glm::min(glm::ivec2(at), glm::ivec2(std::max(size - 2, 0)));
     const glm::ivec2 high = glm::min(low + 1, glm::ivec2(size - 1));
     const glm::vec2 f = at - glm::vec2(low);
@@ -27,17 +27,16 @@ struct Grid {
       return light[static_cast<std::size_t>(y) * static_cast<std::size_t>(size) +
                    static_cast<std::size_t>(x)];
     };
-    const glm::vec3 here = glm::mix(glm::mix(point(low.x, low.y), point(high.x, low.y), f.x),
-                                    glm::mix(point(low.x, high.y), point(high.x, high.y), f.x),
-                                    f.y);
+    const glm::vec3 here =
+        glm::mix(glm::mix(point(low.x, low.y), point(high.x, low.y), f.x),
+                 glm::mix(point(low.x, high.y), point(high.x, high.y), f.x), f.y);
     return glm::mix(open, here, inside.x * inside.y);
   }
 };
 
 Grid evaluate(const PackedGround& ground, const std::vector<glm::vec2>& weights) {
   Grid grid{ground.transfer.size, {}};
-  const auto points =
-      static_cast<std::size_t>(grid.size) * static_cast<std::size_t>(grid.size);
+  const auto points = static_cast<std::size_t>(grid.size) * static_cast<std::size_t>(grid.size);
   grid.light.resize(points);
   parallelFor(points, 256, [&](std::size_t i) {
     grid.light[i] =

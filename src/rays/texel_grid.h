@@ -66,6 +66,17 @@ class TexelGrid {
     return cut && cut_weight > 1e-6f ? cut_sum / cut_weight : sum;
   }
 
+  /// The bytes as they are, in [0, 1]: of normal maps and other data.
+  glm::vec3 data(const glm::vec2& uv) const {
+    const Cell c = cellAt(uv);
+    const auto texel = [this](int x, int y) {
+      const std::uint8_t* p = image_->at(x, y);
+      return glm::vec3(p[0], p[1], p[2]) / 255.0f;
+    };
+    return glm::mix(glm::mix(texel(c.x0, c.y0), texel(c.x1, c.y0), c.s),
+                    glm::mix(texel(c.x0, c.y1), texel(c.x1, c.y1), c.s), c.t);
+  }
+
  private:
   static std::array<float, 256> linearFromByte() {
     std::array<float, 256> table{};

@@ -8,13 +8,12 @@
 #include "render/look.h"
 #include "scene/camera.h"
 #include "scene/ground_texture.h"
+#include "shared/tone.h"
 #include "verdure/error.h"
 
 namespace verdure {
 namespace {
 
-constexpr int kGroundTextureSize = 512;
-constexpr int kGroundNoiseSize = 128;
 constexpr vk::ImageAspectFlags kColorAspect = vk::ImageAspectFlagBits::eColor;
 constexpr vk::ImageAspectFlags kDepthAspect = vk::ImageAspectFlagBits::eDepth;
 
@@ -40,11 +39,6 @@ DrawKind kindOf(const View& view) {
   return {.ambient_source = view.terms.ambient_source,
           .formula_sky = sky != nullptr && sky->formula() != nullptr,
           .background = view.background.has_value()};
-}
-
-/// kcd/m^2 that an exposure value stands for: reflected-light meters with K = 12.5 (ISO 2720).
-float meteredLuminance(float ev) {
-  return 0.125e-3f * std::exp2(ev);
 }
 
 /// Weights for transfer vectors, in frame units.
@@ -81,9 +75,10 @@ FrameDrawer::FrameDrawer(const gpu::Device& device)
       sky_image_(device),
       ground_light_(device) {
   gpu::Upload upload(device);
-  ground_texture_ = upload.texture(buildColorMips(makeGroundTexture(kGroundTextureSize), {}).levels,
-                                   vk::Format::eR8G8B8A8Srgb);
-  ground_noise_ = upload.texture(buildLinearMips(makeGroundNoise(kGroundNoiseSize)).levels,
+  ground_texture_ =
+      upload.texture(buildColorMips(makeGroundTexture(look::kGroundTextureSize), {}).levels,
+                     vk::Format::eR8G8B8A8Srgb);
+  ground_noise_ = upload.texture(buildLinearMips(makeGroundNoise(look::kGroundNoiseSize)).levels,
                                  vk::Format::eR8G8B8A8Unorm);
   upload.finish();
   // No anisotropic filter: ground_pass.frag takes several taps along a grazing footprint itself.
@@ -257,7 +252,7 @@ void FrameDrawer::recordTone(const vk::raii::CommandBuffer& commands, const View
       {.background = glm::vec4(view.background.value_or(glm::vec3(0.0f)), 0.0f),
        .key = view.exposure.key,
        .white = view.exposure.white,
-       .average = view.exposure.ev ? meteredLuminance(*view.exposure.ev) * units : 0.0f,
+       .average = view.exposure.ev ? shared::meteredLuminance(*view.exposure.ev) * units : 0.0f,
        .bloom = view.bloom});
 }
 
@@ -297,8 +292,8 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
   Frame frame;
   frame.image = targets_->readPicture();
   if (view.hdr) frame.hdr = targets_->readHdr(units);
-  frame.average_luminance =
-      view.exposure.ev ? meteredLuminance(*view.exposure.ev) : exposure_pass_.average() / units;
+  frame.average_luminance = view.exposure.ev ? shared::meteredLuminance(*view.exposure.ev)
+                                             : exposure_pass_.average() / units;
   frame.times.shadow_ms = timers_.milliseconds(0, 1);
   frame.times.color_ms = timers_.milliseconds(1, 2);
   frame.times.tone_ms = timers_.milliseconds(2, 3);

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame_set.glsl"
+#include "shared/ground.h"
 #include "shared/illumination.h"
 #include "terms.glsl"
 #include "dome.glsl"
@@ -26,18 +27,11 @@ vec3 grazingTexture(vec2 uv) {
   return 0.25 * sum;
 }
 
-/// Grass at its own size, and again a little larger and turned, where the repetition of one hides
-/// that of the other; noise at three sizes makes patches, lighter, darker and drier.
 vec3 grass(vec2 p) {
-  vec2 q = p / frame.ground.w;
-  vec3 blades = mix(grazingTexture(q),
-                    grazingTexture(mat2(0.8, 0.6, -0.6, 0.8) * q * 0.618), 0.35);
-  float fine = texture(ground_noise, q * 0.211).r;
-  float middle = texture(ground_noise, mat2(0.28, -0.96, 0.96, 0.28) * q * 0.0371).r;
-  float broad = texture(ground_noise, mat2(0.6, 0.8, -0.8, 0.6) * q * 0.0059).r;
-  float tone = 0.5 * fine + 0.3 * middle + 0.2 * broad;
-  vec3 dry = vec3(1.2, 1.03, 0.95);
-  return blades * mix(0.55, 1.45, tone) * mix(vec3(1.0), dry, middle * broad);
+  GroundLookup at = groundLookup(p, frame.ground.w);
+  return groundColor(grazingTexture(at.blades), grazingTexture(at.turned_blades),
+                     texture(ground_noise, at.fine).r, texture(ground_noise, at.middle).r,
+                     texture(ground_noise, at.broad).r);
 }
 
 /// Light on the ground from the sky and from what stands on it; open where the map ends.

@@ -3,6 +3,7 @@
 #include "frame_set.glsl"
 #include "shared/illumination.h"
 #include "shared/leaf.h"
+#include "shared/normal_map.h"
 #include "shared/sh.h"
 #include "terms.glsl"
 #include "sun_visibility.glsl"
@@ -33,21 +34,6 @@ int coverageMask(float alpha, float cutoff) {
   return (1 << min(count, 4)) - 1;
 }
 
-/// Normal map without vertex tangents: the frame follows from the screen derivatives of position
-/// and texture coordinates (Schueler, "Followup: Normal Mapping Without Precomputed Tangents",
-/// 2013). glTF's maps have green up, against its v.
-vec3 mappedNormal(vec3 n, vec3 p_x, vec3 p_y, vec2 uv_x, vec2 uv_y) {
-  vec3 x_perpendicular = cross(p_y, n), y_perpendicular = cross(n, p_x);
-  float handedness = dot(p_x, x_perpendicular) < 0.0 ? -1.0 : 1.0;
-  vec3 t = (x_perpendicular * uv_x.x + y_perpendicular * uv_y.x) * handedness;
-  vec3 b = (x_perpendicular * uv_x.y + y_perpendicular * uv_y.y) * -handedness;
-  float longest = max(dot(t, t), dot(b, b));
-  if (longest <= 0.0) return n;
-  vec3 m = textureGrad(normal_map, uv, uv_x, uv_y).xyz * (255.0 / 127.0) - (128.0 / 127.0);
-  m.xy *= draw.surface.y;
-  return normalize((t * m.x + b * m.y) * inversesqrt(longest) + n * max(m.z, 0.05));
-}
-
 void main() {
   // Derivatives come first: behind the discard below they are not defined.
   vec3 p_x = dFdx(position), p_y = dFdy(position);
@@ -68,7 +54,10 @@ void main() {
   // Opposite normals of neighbouring vertices cancel somewhere between them.
   vec3 n = dot(in_normal.xyz, in_normal.xyz) > 1e-12 ? normalize(in_normal.xyz) : vec3(0, 1, 0);
   if (kFlipNormal && !gl_FrontFacing) n = -n;
-  if (kNormalMap && kTextures) n = mappedNormal(n, p_x, p_y, uv_x, uv_y);
+  if (kNormalMap && kTextures) {
+    vec3 texel_n = textureGrad(normal_map, uv, uv_x, uv_y).xyz;
+    n = mappedNormal(n, p_x, p_y, uv_x, uv_y, texel_n, draw.surface.y);
+  }
   vec3 l = frame.to_sun.xyz;
   vec3 v = normalize(frame.eye.xyz - position);
 

@@ -34,6 +34,12 @@ SHARED_FUNCTION vec3 toneMapped(vec3 scaled, float white) {
   return top <= 1.0f ? color : vec3(d) + (color - vec3(d)) * ((1.0f - d) / (top - d));
 }
 
+/// kcd/m^2 that an exposure value at ISO 100 stands for: reflected-light meters with K = 12.5 (ISO
+/// 2720).
+SHARED_FUNCTION float meteredLuminance(float ev) {
+  return 0.125e-3f * pow(2.0f, ev);
+}
+
 /// Threshold of a pixel's channel (0 to 2) for dithering: fixed, evenly spread over [0, 1) even
 /// among few neighbours (Jimenez, "Next Generation Post Processing in Call of Duty: Advanced
 /// Warfare", SIGGRAPH 2014 courses: interleaved gradient noise); each channel has its own.

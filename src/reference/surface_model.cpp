@@ -1,0 +1,133 @@
+#include "reference/surface_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "scene/ground_texture.h"
+#include "scene/look.h"
+#include "scene/scene.h"
+#include "shared/ground.h"
+#include "shared/leaf.h"
+#include "shared/normal_map.h"
+
+namespace verdure {
+namespace {
+
+float meanOf(const glm::vec3& c) {
+  return (c.x + c.y + c.z) / 3.0f;
+}
+
+glm::vec3 mirrored(const glm::vec3& v, const glm::vec3& unit_normal) {
+  return v - 2.0f * glm::dot(v, unit_normal) * unit_normal;
+}
+
+/// A unit direction with density cos / pi around `axis`: a point of the unit sphere on top of it.
+glm::vec3 cosineDirection(const glm::vec3& axis, Random& random) {
+  const float z = random.uniform(-1.0f, 1.0f), turn = random.uniform(0.0f, glm::two_pi<float>());
+  const float ring = std::sqrt(std::max(1.0f - z * z, 0.0f));
+  const glm::vec3 sum = axis + glm::vec3(ring * std::cos(turn), ring * std::sin(turn), z);
+  const float length = glm::length(sum);
+  return length > 1e-6f ? sum / length : axis;
+}
+
+}  // namespace
+
+float Scatterer::lobe(const glm::vec3& direction, bool reflected) const {
+  const glm::vec3 axis = reflected ? normal : -normal;
+  return (std::max(glm::dot(axis, direction), 0.0f) +
+          std::max(glm::dot(axis, mirrored(direction, side)), 0.0f)) /
+         glm::pi<float>();
+}
+
+float Scatterer::reflectedShare() const {
+  const float r = meanOf(reflectance), t = meanOf(transmittance);
+  return r + t > 0.0f ? r / (r + t) : 0.0f;
+}
+
+glm::vec3 Scatterer::value(const glm::vec3& direction) const {
+  const bool reflected = glm::dot(direction, side) > 0.0f;
+  return (reflected ? reflectance : transmittance) * lobe(direction, reflected);
+}
+
+float Scatterer::density(const glm::vec3& direction) const {
+  const bool reflected = glm::dot(direction, side) > 0.0f;
+  const float share = reflectedShare();
+  return (reflected ? share : 1.0f - share) * lobe(direction, reflected);
+}
+
+std::optional<Scatterer::Sample> Scatterer::sample(Random& random) const {
+  const float share = reflectedShare();
+  const bool reflected = random.uniform() < share;
+  const glm::vec3 color = reflected ? reflectance : transmittance;
+  if (!(meanOf(color) > 0.0f)) return std::nullopt;
+  glm::vec3 direction = cosineDirection(reflected ? normal : -normal, random);
+  if ((glm::dot(direction, side) > 0.0f) != reflected) direction = mirrored(direction, side);
+  return Sample{direction, color / (reflected ? share : 1.0f - share)};
+}
+
+SurfaceModel::SurfaceModel(const Scene& scene, const RayScene& rays, bool normal_maps)
+    : scene_(scene), rays_(rays) {
+  if (scene.ground) {
+    ground_.image = makeGroundTexture(look::kGroundTextureSize);
+    ground_noise_.image = makeGroundNoise(look::kGroundNoiseSize);
+  }
+  for (const SceneItem& item : scene.items) {
+    std::vector<MeshNormals>& normals = normals_.emplace_back();
+    for (const Mesh& mesh : item.plant->meshes) {
+      MeshNormals& entry = normals.emplace_back();
+      if (!normal_maps || mesh.uvs.empty() || mesh.material >= item.plant->materials.size())
+        continue;
+      const Material& material = item.plant->materials[mesh.material];
+      if (material.normal_texture < 0) continue;
+      entry.map.emplace(textureOf(*item.plant, material.normal_texture));
+      entry.scale = material.normal_scale;
+    }
+    std::vector<glm::mat4>& worlds = worlds_.emplace_back();
+    for (const glm::mat4& instance : item.world_from_plant)
+      worlds.push_back(worldFromPlant(scene, item, instance));
+  }
+}
+
+glm::vec3 SurfaceModel::mappedNormal(const RayHit& hit, const glm::vec2& uv,
+                                     const glm::vec3& normal) const {
+  const MeshNormals& entry = normals_[hit.item][hit.mesh];
+  if (!entry.map) return normal;
+  const Mesh& mesh = scene_.items[hit.item].plant->meshes[hit.mesh];
+  const std::uint32_t* corner = &mesh.indices[std::size_t{3} * hit.triangle];
+  const glm::mat3 world(worlds_[hit.item][hit.instance]);
+  const glm::vec3 origin = mesh.positions[corner[0]];
+  const glm::vec2 uv_origin = mesh.uvs[corner[0]];
+  return shared::mappedNormal(normal, world * (mesh.positions[corner[1]] - origin),
+                              world * (mesh.positions[corner[2]] - origin),
+                              mesh.uvs[corner[1]] - uv_origin, mesh.uvs[corner[2]] - uv_origin,
+                              entry.map->data(uv), entry.scale);
+}
+
+glm::vec3 SurfaceModel::groundReflectance(const glm::vec3& position) const {
+  const TexelGrid grass(ground_), noise(ground_noise_);
+  const shared::GroundLookup at =
+      shared::groundLookup({position.x, position.z}, look::kGroundTile_m);
+  return glm::min(
+      shared::groundColor(grass.color(at.blades, false), grass.color(at.turned_blades, false),
+                          noise.data(at.fine).x, noise.data(at.middle).x, noise.data(at.broad).x),
+      1.0f);
+}
+
+SurfaceModel::Point SurfaceModel::at(const RayHit& hit, const Ray& ray) const {
+  const SurfacePoint surface = rays_.surfaceAt(hit, ray);
+  Point point{surface.position, {}};
+  Scatterer& scatterer = point.scatterer;
+  if (hit.ground()) {
+    scatterer.reflectance = groundReflectance(surface.position);
+    return point;
+  }
+  const float facing = glm::dot(surface.normal, ray.direction) > 0.0f ? -1.0f : 1.0f;
+  scatterer.side = facing * surface.normal;
+  scatterer.normal = mappedNormal(hit, surface.uv, facing * surface.vertex_normal);
+  scatterer.reflectance = glm::clamp(surface.reflectance, 0.0f, 1.0f);
+  if (surface.foliage) scatterer.transmittance = shared::leafTransmittance(scatterer.reflectance);
+  return point;
+}
+
+}  // namespace verdure

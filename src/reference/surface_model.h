@@ -1,0 +1,67 @@
+#ifndef VERDURE_REFERENCE_SURFACE_MODEL_H_
+#define VERDURE_REFERENCE_SURFACE_MODEL_H_
+
+#include <optional>
+#include <vector>
+
+#include "base/random.h"
+#include "rays/ray_scene.h"
+#include "rays/texel_grid.h"
+
+namespace verdure {
+
+/// Diffuse reflection on the side of `side` and diffuse transmission to the other, both with the
+/// cosine to a shading normal. The part of a lobe on the wrong side of the surface is mirrored
+/// back: a white surface loses and gains nothing, whatever its normals.
+struct Scatterer {
+  glm::vec3 side{0.0f, 1.0f, 0.0f};    ///< unit, the triangle's normal, towards where light leaves
+  glm::vec3 normal{0.0f, 1.0f, 0.0f};  ///< unit, for shading
+  glm::vec3 reflectance{0.0f};
+  glm::vec3 transmittance{0.0f};
+
+  /// What light from a unit direction becomes, times its cosine: dL = value * L_i d_omega.
+  glm::vec3 value(const glm::vec3& direction) const;
+  /// Per steradian, of sample().
+  float density(const glm::vec3& direction) const;
+
+  struct Sample {
+    glm::vec3 direction{0.0f};
+    glm::vec3 weight{0.0f};  ///< value / density
+  };
+  /// None where the surface is black.
+  std::optional<Sample> sample(Random& random) const;
+
+ private:
+  float lobe(const glm::vec3& direction, bool reflected) const;
+  float reflectedShare() const;
+};
+
+/// What a scene's surfaces look like, at a hit of RayScene.
+class SurfaceModel {
+ public:
+  SurfaceModel(const Scene& scene, const RayScene& rays, bool normal_maps);
+
+  struct Point {
+    glm::vec3 position{0.0f};
+    Scatterer scatterer;
+  };
+  Point at(const RayHit& hit, const Ray& ray) const;
+
+ private:
+  struct MeshNormals {
+    std::optional<TexelGrid> map;
+    float scale = 1.0f;
+  };
+  glm::vec3 mappedNormal(const RayHit& hit, const glm::vec2& uv, const glm::vec3& normal) const;
+  glm::vec3 groundReflectance(const glm::vec3& position) const;
+
+  const Scene& scene_;
+  const RayScene& rays_;
+  std::vector<std::vector<MeshNormals>> normals_;  ///< by item and mesh
+  std::vector<std::vector<glm::mat4>> worlds_;     ///< by item and instance
+  Texture ground_, ground_noise_;
+};
+
+}  // namespace verdure
+
+#endif  // VERDURE_REFERENCE_SURFACE_MODEL_H_

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/scene_options.h"
 #include "verdure/density.h"
 #include "verdure/grow.h"
 #include "verdure/plant_io.h"
@@ -84,28 +85,35 @@ struct ExposureOptions {
 Exposure parseExposure(const ExposureOptions& options);
 float parseBloom(const ExposureOptions& options);
 
-struct RenderCommand {
-  std::string input;
+struct RenderCommand : SceneOptions {
   std::string output;
-  LoadOptions load;
   BakeParameters bake;
   bool bake_again =
       false;  ///< parameters of the bake were given: the file's own light is not theirs
-  std::string size = "960x720";
   std::string light = "expressive";
   std::string terms;
   DaylightOptions daylight;
   ExposureOptions exposure;
   int bands = 5;
-  std::string camera = "auto";
-  double fov_deg = 34.0;
   std::string background;
-  bool no_ground = false;
   int shadow_map = 2048;
   DeviceOptions device;
   bool json = false;
 };
 void runRender(const RenderCommand& command);
+
+struct ReferenceCommand : SceneOptions {
+  std::string output;
+  DaylightOptions daylight;
+  ExposureOptions exposure;
+  int samples = 64;
+  double seconds = 0.0;
+  double noise = 0.0;
+  int bounces = 32;
+  std::uint32_t seed = 1;
+  bool json = false;
+};
+void runReference(const ReferenceCommand& command);
 
 struct CompareCommand {
   std::string reference, test;

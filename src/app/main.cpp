@@ -69,6 +69,20 @@ void addBakeOptions(CLI::App& command, BakeParameters& bake, const char* group) 
       ->capture_default_str();
 }
 
+/// The plant, the picture's size and the camera.
+void addSceneOptions(CLI::App& command, SceneOptions& scene) {
+  command.add_option("file", scene.input, "Plant: .glb .gltf .obj .fbx .dae .ply")->required();
+  addLoadOptions(command, scene.load);
+  command.add_option("--size", scene.size, "WxH, pixels")->capture_default_str();
+  command
+      .add_option("--camera", scene.camera,
+                  "auto; AZIMUTH,ELEVATION in degrees; or X,Y,Z,TARGETX,TARGETY,TARGETZ in m")
+      ->capture_default_str();
+  command.add_option("--fov", scene.fov_deg, "Vertical field of view, degrees")
+      ->capture_default_str();
+  command.add_flag("--no-ground", scene.no_ground, "Leave the ground out");
+}
+
 void addDeviceOptions(CLI::App& command, DeviceOptions& device) {
   command.add_option("--device", device.device, "Part of the name of the Vulkan device to use");
   command.add_flag("--validation", device.validation, "Check the use of Vulkan (slow)");
@@ -96,8 +110,6 @@ void addExposureOptions(CLI::App& command, ExposureOptions& exposure) {
       ->capture_default_str();
   command
       .add_option("--white", exposure.white, "Luminance of pure white, in averages times the key")
-      ->capture_default_str();
-  command.add_option("--bloom", exposure.bloom, "Share of light that the lens spreads, 0 to 1")
       ->capture_default_str();
 }
 
@@ -178,33 +190,47 @@ int run(int argc, char** argv) {
 
   RenderCommand render;
   CLI::App* render_app = app.add_subcommand("render", "Render a plant to a picture");
-  render_app->add_option("file", render.input, "Plant: .glb .gltf .obj .fbx .dae .ply")->required();
+  addSceneOptions(*render_app, render);
   render_app->add_option("-o,--output", render.output, "File to write: .png, or .exr in kcd/m^2")
       ->required();
-  addLoadOptions(*render_app, render.load);
-  render_app->add_option("--size", render.size, "WxH, pixels")->capture_default_str();
   render_app->add_option("--light", render.light, "standard, expressive or transfer")
       ->capture_default_str();
   render_app->add_option("--terms", render.terms,
                          "Only these terms: ambient,diffuse,specular,shadow,textures,transmission");
   addDaylightOptions(*render_app, render.daylight);
   addExposureOptions(*render_app, render.exposure);
+  render_app
+      ->add_option("--bloom", render.exposure.bloom, "Share of light that the lens spreads, 0 to 1")
+      ->capture_default_str();
   render_app->add_option("--bands", render.bands, "Bands of harmonics of the sky's light, 2 to 7")
       ->capture_default_str();
-  render_app
-      ->add_option("--camera", render.camera,
-                   "auto; AZIMUTH,ELEVATION in degrees; or X,Y,Z,TARGETX,TARGETY,TARGETZ in m")
-      ->capture_default_str();
-  render_app->add_option("--fov", render.fov_deg, "Vertical field of view, degrees")
-      ->capture_default_str();
   render_app->add_option("--background", render.background, "R,G,B in [0, 1] instead of the sky");
-  render_app->add_flag("--no-ground", render.no_ground, "Leave the ground out");
   render_app->add_option("--shadow-map", render.shadow_map, "Side of the shadow map, pixels")
       ->capture_default_str();
   addDeviceOptions(*render_app, render.device);
   constexpr const char* kBakeGroup = "Density field (given any, the file's own bake is left)";
   addBakeOptions(*render_app, render.bake, kBakeGroup);
   render_app->add_flag("--json", render.json, "Print times as JSON");
+
+  ReferenceCommand reference;
+  CLI::App* reference_app =
+      app.add_subcommand("reference", "Path-trace a plant: the truth for render (CPU)");
+  addSceneOptions(*reference_app, reference);
+  reference_app
+      ->add_option("-o,--output", reference.output, "File to write: .png, or .exr in kcd/m^2")
+      ->required();
+  addDaylightOptions(*reference_app, reference.daylight);
+  addExposureOptions(*reference_app, reference.exposure);
+  reference_app->add_option("--samples", reference.samples, "Paths a pixel at most")
+      ->capture_default_str();
+  reference_app->add_option("--seconds", reference.seconds, "Stop after this time, 0 = never")
+      ->capture_default_str();
+  reference_app->add_option("--noise", reference.noise, "Stop at this relative noise, 0 = never")
+      ->capture_default_str();
+  reference_app->add_option("--bounces", reference.bounces, "Surfaces on a path, 1 = direct light")
+      ->capture_default_str();
+  reference_app->add_option("--seed", reference.seed, "Of the noise")->capture_default_str();
+  reference_app->add_flag("--json", reference.json, "Print JSON");
 
   CompareCommand compare;
   CLI::App* compare_app = app.add_subcommand("compare", "Say how different two images are");
@@ -247,7 +273,7 @@ int run(int argc, char** argv) {
   }
   if (app.get_subcommands().empty())
     throw Error("command line", "no command is named",
-                "use grow, inspect, bake, render, compare or figures; see " + help);
+                "use grow, inspect, bake, render, reference, compare or figures; see " + help);
   if (*figures_app && !*luft_app)
     throw Error("figures", "no paper is named", "use luft; see verdure figures --help");
   for (const CLI::Option* option : render_app->get_options())
@@ -257,6 +283,7 @@ int run(int argc, char** argv) {
   if (*inspect_app) runInspect(inspect);
   if (*bake_app) runBake(bake);
   if (*render_app) runRender(render);
+  if (*reference_app) runReference(reference);
   if (*compare_app) return runCompare(compare);
   if (*luft_app) runLuftFigures(figures);
   return 0;

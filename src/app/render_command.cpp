@@ -10,15 +10,10 @@
 #include "app/commands.h"
 #include "base/files.h"
 #include "base/progress.h"
-#include "plant/normals.h"
 #include "verdure/error.h"
 
 namespace verdure::app {
 namespace {
-
-float radians(float degrees) {
-  return degrees * static_cast<float>(M_PI / 180.0);
-}
 
 Terms parseTerms(const RenderCommand& command) {
   Terms terms = presetTerms(command.light);
@@ -45,25 +40,7 @@ Terms parseTerms(const RenderCommand& command) {
   return terms;
 }
 
-Camera parseCamera(const RenderCommand& command, const Scene& scene, float aspect) {
-  const float fov = radians(static_cast<float>(command.fov_deg));
-  if (command.camera == "auto")
-    return automaticCamera(scene, radians(35.0f), radians(4.0f), aspect, fov);
-  const std::vector<float> n = parseNumbers("--camera", command.camera, 0);
-  if (n.size() == 2) return automaticCamera(scene, radians(n[0]), radians(n[1]), aspect, fov);
-  if (n.size() == 6) return {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, fov};
-  throw Error("--camera", "needs 2 or 6 numbers", "AZIMUTH,ELEVATION or X,Y,Z,TX,TY,TZ");
-}
-
 }  // namespace
-
-float groundHeight(const Plant& plant) {
-  constexpr float kMostBelow = 0.25f;  // share of the height
-  const Bounds box = bounds(plant);
-  const bool from_zero = plant.origin == glm::dvec3(0.0) && box.min.y <= 0.0f &&
-                         -box.min.y < kMostBelow * box.size().y;
-  return from_zero ? 0.0f : box.min.y;
-}
 
 void checkOutput(const std::string& path, const std::vector<std::string>& extensions) {
   if (std::find(extensions.begin(), extensions.end(), std::filesystem::path(path).extension()) ==
@@ -125,7 +102,7 @@ std::optional<CrownLight> lightOfFile(const Plant& plant) {
 
 void runRender(const RenderCommand& command) {
   View view;
-  std::tie(view.width, view.height) = parseSize(command.size);
+  std::tie(view.width, view.height) = command.sizeInPixels();
   view.terms = parseTerms(command);
   view.daylight = parseDaylight(command.daylight);
   view.exposure = parseExposure(command.exposure);
@@ -133,8 +110,7 @@ void runRender(const RenderCommand& command) {
   if (command.bands < 2 || command.bands > 7)
     throw Error("--bands", fmt::format("{} is out of range", command.bands), "choose 2 to 7");
   view.sky_bands = command.bands;
-  if (!(command.fov_deg > 0.0 && command.fov_deg < 170.0))
-    throw Error("--fov", "must lie between 0 and 170 degrees", "34 is usual");
+  command.checkCamera();
   if (!command.background.empty()) {
     const auto rgb = parseNumbers("--background", command.background, 3);
     for (const float c : rgb)
@@ -176,18 +152,11 @@ void runRender(const RenderCommand& command) {
     light = std::move(bake.light);
     bake_seconds = bake.report.seconds_total;
   }
-  // A baked file has no leaf normals any more: they are found again from its triangles.
-  if (view.terms.normal == NormalSource::kLeaf)
-    for (Mesh& mesh : plant.meshes)
-      if (mesh.kind == PartKind::kFoliage && !mesh.ambient.empty())
-        mesh.normals = angleWeightedNormals(mesh.positions, mesh.indices);
-  Scene scene;
-  scene.ground = !command.no_ground;
-  scene.ground_height = groundHeight(plant);
-  scene.items.push_back({&plant, light ? &*light : nullptr});
+  if (view.terms.normal == NormalSource::kLeaf) restoreLeafNormals(plant);
+  Scene scene = command.sceneOf(plant, light ? &*light : nullptr);
   if (transfer) scene.items[0].transfer = &*transfer;
   view.camera =
-      parseCamera(command, scene, static_cast<float>(view.width) / static_cast<float>(view.height));
+      command.cameraFor(scene, static_cast<float>(view.width) / static_cast<float>(view.height));
   progress.show("drawing");
   renderer.setScene(scene);
   const Frame frame = renderer.render(view);

@@ -1,0 +1,34 @@
+#ifndef VERDURE_APP_SCENE_OPTIONS_H_
+#define VERDURE_APP_SCENE_OPTIONS_H_
+
+#include <string>
+
+#include "verdure/plant_io.h"
+#include "verdure/scene.h"
+
+/// What render and reference have in common: the plant, and the camera.
+namespace verdure::app {
+
+struct SceneOptions {
+  std::string input;
+  LoadOptions load;
+  std::string size = "960x720";
+  std::string camera = "auto";
+  double fov_deg = 34.0;
+  bool no_ground = false;
+
+  /// All throw Error that names the option.
+  std::pair<int, int> sizeInPixels() const;
+  void checkCamera() const;
+  /// The camera that shows `scene` in a picture of `aspect` = width / height.
+  Camera cameraFor(const Scene& scene, float aspect) const;
+  /// The plant alone, on the ground unless that is left out.
+  Scene sceneOf(const Plant& plant, const CrownLight* light) const;
+};
+
+/// A baked file has no leaf normals any more: finds them again from its triangles.
+void restoreLeafNormals(Plant& plant);
+
+}  // namespace verdure::app
+
+#endif  // VERDURE_APP_SCENE_OPTIONS_H_

@@ -68,6 +68,13 @@ TEST_F(CommandLineRender, OptionsOfTheView) {
       difference(plain, picture(tree, {"--terms", "ambient,diffuse,specular,shadow,textures"})),
       0.0);
   EXPECT_GT(difference(plain, picture(tree, {"--turbidity", "8"})), 1.0);
+  EXPECT_GT(difference(plain, picture(tree, {"--sky", "cie:1"})), 1.0);
+  HdrImage panorama(16, 8);
+  for (glm::vec3& p : panorama.rgb) p = {1.0f, 2.0f, 3.0f};
+  writeExr(panorama, path("sky.exr"));
+  EXPECT_GT(difference(plain, picture(tree, {"--sky", path("sky.exr")})), 1.0);
+  EXPECT_GT(difference(plain, picture(tree, {"--date", "2026-06-21T16:00Z", "--place", "51,0"})),
+            0.1);
   EXPECT_GT(difference(plain, picture(tree, {"--key", "0.36"})), 5.0);
   EXPECT_GT(difference(plain, picture(tree, {"--exposure", "12"})), 5.0);
   EXPECT_GT(difference(plain, picture(tree, {"--white", "1"})), 0.5);
@@ -95,8 +102,8 @@ TEST_F(CommandLineRender, OptionsOfTheView) {
 TEST_F(CommandLineRender, WritesLightAsOpenExr) {
   const std::string tree = smallTree();
   const auto average = [&](const Words& options) {
-    Words command = {"render", tree,    "-o",           path("out.exr"), "--size",
-                     "96x72",  "--sun", "85,42",        "--shadow-map",  "256",
+    Words command = {"render", tree,      "-o",      path("out.exr"), "--size",
+                     "96x72",  "--sun",   "85,42",   "--shadow-map",  "256",
                      "--json", "--light", "standard"};
     command.insert(command.end(), options.begin(), options.end());
     const Json report = Json::parse(runWell(command));
@@ -159,14 +166,20 @@ TEST_F(CommandLineRender, Refuses) {
   refused({"--sun", "10,130"}, {"--sun: the elevation 130"});
   refused({"--turbidity", "50"}, {"turbidity"});
   refused({"--turbidity", "nan"}, {"turbidity"});
-  refused({"--sky", "green"}, {"--sky: 'green'"});
+  refused({"--sky", "green"}, {"--sky: 'green' is unknown"});
   refused({"--bands", "9"}, {"--bands: 9 is out of range"});
   refused({"--exposure", "bright"}, {"--exposure: 'bright' is no number"});
   refused({"--exposure", "99"}, {"--exposure: 99 is out of range"});
   refused({"--key", "0"}, {"--key: 0 is out of range"});
   refused({"--white", "-1"}, {"--white: -1 is out of range"});
   refused({"--bloom", "2"}, {"--bloom: 2 is out of range"});
-  refused({"--light", "transfer"}, {"transfer vectors"});
+  refused({"--light", "transfer"}, {"no transfer vectors", "bake --transfer"});
+  refused({"--sky", "cie:16"}, {"--sky: 'cie:16' is no CIE standard sky"});
+  refused({"--sky", "none.exr"}, {"none.exr"});
+  refused({"--date", "2026-06-21T12:30Z"}, {"--date: ", "--place"});
+  refused({"--date", "2026-06-21T00:30Z", "--place", "51,0"}, {"sun"});  // at night
+  refused({"--date", "yesterday", "--place", "51,0"}, {"yesterday"});
+  refused({"--date", "2026-06-21T12:30Z", "--place", "51,0", "--sun", "1,2"}, {"--sun: "});
   refused({"--camera", "1,2,3"}, {"--camera: needs 2 or 6 numbers"});
   refused({"--camera", "1,2,3,1,2,3"}, {"same point"});
   refused({"--fov", "0"}, {"--fov: "});

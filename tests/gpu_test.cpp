@@ -27,9 +27,8 @@ TEST(Barrier, WritesAreMadeVisibleAndReadsAreNot) {
     EXPECT_TRUE(info.access & (Access::eTransferWrite | Access::eColorAttachmentWrite |
                                Access::eDepthStencilAttachmentWrite | Access::eShaderStorageWrite));
   }
-  for (const Use use :
-       {Use::kTransferSource, Use::kFragmentSampled, Use::kComputeSampled, Use::kVertexInput,
-        Use::kFragmentStorage, Use::kHostRead}) {
+  for (const Use use : {Use::kTransferSource, Use::kFragmentSampled, Use::kComputeSampled,
+                        Use::kVertexInput, Use::kFragmentStorage, Use::kHostRead}) {
     const UseInfo info = useInfo(use);
     EXPECT_TRUE(info.stages);
     EXPECT_FALSE(info.access & (Access::eTransferWrite | Access::eColorAttachmentWrite |

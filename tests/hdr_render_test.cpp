@@ -140,8 +140,8 @@ TEST(FrameLight, MirroredSkiesLightAsTheyAre) {
   EXPECT_LT(std::sqrt(mirrored / 15.0), 0.05);
   EXPECT_LT(mirrored, 0.1 * plain);
   EXPECT_LT(mirrored, 0.1 * filtered);
-  std::printf("rms error as it is %.3f, with (5.5) %.3f, mirrored %.3f\n",
-              std::sqrt(plain / 15.0), std::sqrt(filtered / 15.0), std::sqrt(mirrored / 15.0));
+  std::printf("rms error as it is %.3f, with (5.5) %.3f, mirrored %.3f\n", std::sqrt(plain / 15.0),
+              std::sqrt(filtered / 15.0), std::sqrt(mirrored / 15.0));
 }
 
 class HdrRender : public RenderTest {};
@@ -165,7 +165,10 @@ PlantTransfer quadTransfer(const Plant& quad, int bands, const glm::vec3& normal
   transfer.meshes.push_back({pack(front, bands, 1.0f, count), pack(back, bands, 1.0f, count),
                              pack(front, 2, 0.0f, count), pack(back, 2, 0.0f, count)});
   const Harmonics up = projectSky(Receiver({0, 1, 0}, 0.0f, 1.1f), bands);
-  transfer.ground = {4, glm::vec2(-2.0f), 4.0f / 3.0f,
+  transfer.ground = {4,
+                     glm::vec2(-2.0f),
+                     4.0f / 3.0f,
+                     0.0f,
                      {pack(up, bands, 0.25f, 16), {}, pack(up, 2, 0.0f, 16), {}}};
   return transfer;
 }
@@ -386,9 +389,9 @@ TEST_F(HdrRender, PicturesAreTheToneMappedLight) {
     const Frame frame = renderer().render(view);
     for (int y = 0; y < view.height; ++y)
       for (int x = 0; x < view.width; ++x) {
-        const glm::vec3 shown = shared::toneMapped(
-            frame.hdr.at(x, y) * (view.exposure.key / frame.average_luminance),
-            view.exposure.white);
+        const glm::vec3 shown =
+            shared::toneMapped(frame.hdr.at(x, y) * (view.exposure.key / frame.average_luminance),
+                               view.exposure.white);
         for (int c = 0; c < 3; ++c)
           EXPECT_NEAR(frame.image.at(x, y)[c], 255.0f * shared::srgbFromLinear(shown[c]), 1.6f)
               << x << " " << y;

@@ -52,8 +52,8 @@ struct Exposure {
   /// Exposure value at ISO 100 (15 = full sun): of the luminance 0.125 cd/m^2 2^ev that takes the
   /// place of the picture's log-average. Unset: that average, measured.
   std::optional<float> ev;
-  float key = 0.18f;   ///< a: to which the average is scaled, > 0; 0.09 is a dark, 0.36 a light key
-  float white = 3.0f;  ///< smallest scaled luminance that becomes pure white, > 0
+  float key = 0.3f;    ///< a: to which the average is scaled, > 0; 0.09 is a dark, 0.36 a light key
+  float white = 2.0f;  ///< smallest scaled luminance that becomes pure white, > 0
 };
 
 /// One picture. The defaults are a clear summer day.
@@ -65,7 +65,7 @@ struct View {
   int sky_bands = 5;  ///< of spherical harmonics that light the scene, 2 to 7
   Terms terms;
   Exposure exposure;
-  float bloom = 0.03f;  ///< share of the light that lens and eye spread, [0, 1]
+  float bloom = 0.01f;  ///< share of the light that lens and eye spread, [0, 1]
   int shadow_map_size = 2048;
   /// Linear display RGB in [0, 1] instead of the sky and the sun's disk; not exposed.
   std::optional<glm::vec3> background;
@@ -84,7 +84,8 @@ struct Frame {
   /// kcd/m^2, unexposed and without bloom: the plain average over each pixel. Halves (11 bits) of a
   /// range that the daylight sets. Background is black. Empty unless View::hdr.
   HdrImage hdr;
-  float average_luminance = 0.0f;  ///< kcd/m^2: log-average of the picture, or what the EV stands for
+  float average_luminance =
+      0.0f;  ///< kcd/m^2: log-average of the picture, or what the EV stands for
   FrameTimes times;
 };
 

@@ -69,7 +69,8 @@ void runBake(const BakeCommand& command);
 /// How a scene is lit.
 struct DaylightOptions {
   std::string sky = "preetham";
-  std::string sun = "85,42";
+  std::string sun;          ///< AZIMUTH,ELEVATION; empty = 85,42 (of a panorama: its own)
+  std::string date, place;  ///< instead: both, or neither
   double turbidity = 3.0;
 };
 Daylight parseDaylight(const DaylightOptions& options);
@@ -77,9 +78,9 @@ Daylight parseDaylight(const DaylightOptions& options);
 /// How light becomes a picture.
 struct ExposureOptions {
   std::string exposure = "auto";
-  double key = Exposure().key;
-  double white = Exposure().white;
-  double bloom = 0.03;
+  double key = 0.3;
+  double white = 2.0;
+  double bloom = 0.01;
 };
 Exposure parseExposure(const ExposureOptions& options);
 float parseBloom(const ExposureOptions& options);

@@ -89,9 +89,14 @@ void addDeviceOptions(CLI::App& command, DeviceOptions& device) {
 }
 
 void addDaylightOptions(CLI::App& command, DaylightOptions& daylight) {
-  command.add_option("--sky", daylight.sky, "preetham")->capture_default_str();
-  command.add_option("--sun", daylight.sun, "AZIMUTH,ELEVATION, degrees (azimuth 0: +Z, 90: +X)")
+  command
+      .add_option("--sky", daylight.sky,
+                  "preetham; cie:1 (overcast) to cie:15; or a panorama, .exr or .hdr in kcd/m^2")
       ->capture_default_str();
+  command.add_option("--sun", daylight.sun,
+                     "AZIMUTH,ELEVATION, degrees (azimuth 0: +Z, 90: +X) (default: 85,42)");
+  command.add_option("--date", daylight.date, "Time that says where the sun is: ISO 8601");
+  command.add_option("--place", daylight.place, "LATITUDE,LONGITUDE, degrees, with --date");
   command.add_option("--turbidity", daylight.turbidity, "Haze of the air: 2 clear to 10 thick")
       ->capture_default_str();
 }

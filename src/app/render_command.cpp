@@ -122,8 +122,6 @@ void runRender(const RenderCommand& command) {
   if (command.shadow_map < 16)
     throw Error("--shadow-map", "must be at least 16 pixels", "2048 is usual");
   view.shadow_map_size = command.shadow_map;
-  if (view.terms.ambient_source == AmbientSource::kTransfer)
-    throw Error("--light", "the plant carries no transfer vectors", "use standard or expressive");
   const DensityOptions bake_options = command.bake.checked();
   checkOutput(command.output, {".png", ".exr"});
   view.hdr = std::filesystem::path(command.output).extension() == ".exr";
@@ -133,6 +131,15 @@ void runRender(const RenderCommand& command) {
   Renderer renderer(command.device);
   progress.show("loading");
   Plant plant = loadPlant(command.input, command.load);
+  std::optional<PlantTransfer> transfer;
+  if (view.terms.ambient_source == AmbientSource::kTransfer) {
+    transfer = loadTransfer(command.input, plant);
+    if (!transfer)
+      throw Error(command.input,
+                  fmt::format("has no transfer vectors ({} is not there)",
+                              transferPath(command.input).string()),
+                  "trace them with verdure bake --transfer 5");
+  }
   // The file's own bake, or one made now; a light without baked terms needs neither.
   std::optional<CrownLight> light;
   if (!command.bake_again) light = lightOfFile(plant);
@@ -146,7 +153,8 @@ void runRender(const RenderCommand& command) {
     bake_seconds = bake.report.seconds_total;
   }
   if (view.terms.normal == NormalSource::kLeaf) restoreLeafNormals(plant);
-  const Scene scene = command.sceneOf(plant, light ? &*light : nullptr);
+  Scene scene = command.sceneOf(plant, light ? &*light : nullptr);
+  if (transfer) scene.items[0].transfer = &*transfer;
   view.camera =
       command.cameraFor(scene, static_cast<float>(view.width) / static_cast<float>(view.height));
   progress.show("drawing");

@@ -12,16 +12,17 @@ SetLayout::SetLayout(const Device& device,
 DescriptorSet::DescriptorSet(const Device& device, const SetLayout& layout)
     : device_(&device), types_(layout.types) {
   std::vector<vk::DescriptorPoolSize> sizes;
-  for (const vk::DescriptorType type : types_) sizes.push_back({.type = type, .descriptorCount = 1});
+  for (const vk::DescriptorType type : types_)
+    sizes.push_back({.type = type, .descriptorCount = 1});
   pool_ = device.raii().createDescriptorPool(
       {.flags = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
        .maxSets = 1,
        .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
        .pPoolSizes = sizes.data()});
   set_ = std::move(vk::raii::DescriptorSets(
-      device.raii(), vk::DescriptorSetAllocateInfo{.descriptorPool = *pool_,
-                                                   .descriptorSetCount = 1,
-                                                   .pSetLayouts = &*layout.layout})[0]);
+      device.raii(),
+      vk::DescriptorSetAllocateInfo{
+          .descriptorPool = *pool_, .descriptorSetCount = 1, .pSetLayouts = &*layout.layout})[0]);
 }
 
 void DescriptorSet::setBuffer(std::uint32_t binding, const Buffer& buffer) {

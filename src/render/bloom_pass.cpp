@@ -13,8 +13,8 @@ constexpr std::uint32_t kUp[] = {
 #include "shaders/bloom_up.frag.inc"
 };
 constexpr vk::Format kFormat = vk::Format::eR16G16B16A16Sfloat;
-constexpr std::size_t kMostLevels = 7;    // the widest spreads over some 2^8 pixels
-constexpr std::uint32_t kSmallest = 6;    // pixels across the coarsest level, about
+constexpr std::size_t kMostLevels = 7;  // the widest spreads over some 2^8 pixels
+constexpr std::uint32_t kSmallest = 6;  // pixels across the coarsest level, about
 constexpr vk::ImageAspectFlags kColorAspect = vk::ImageAspectFlagBits::eColor;
 
 gpu::Texture makeLevel(const gpu::Device& device, std::uint32_t width, std::uint32_t height) {
@@ -35,8 +35,8 @@ BloomPass::BloomPass(const gpu::Device& device)
       layout_(gpu::makePipelineLayout(device, std::array{*set_.layout})),
       down_(makeFullscreenPipeline(device, kDown, *layout_, kFormat)),
       up_(makeFullscreenPipeline(device, kUp, *layout_, kFormat)),
-      sampler_(gpu::makeSampler(device, vk::Filter::eLinear,
-                                vk::SamplerAddressMode::eClampToEdge)) {}
+      sampler_(
+          gpu::makeSampler(device, vk::Filter::eLinear, vk::SamplerAddressMode::eClampToEdge)) {}
 
 void BloomPass::setSource(const gpu::Texture& source) {
   levels_.clear();
@@ -51,7 +51,7 @@ void BloomPass::setSource(const gpu::Texture& source) {
     Level& level = levels_[i];
     const bool coarsest = i + 1 == levels_.size();
     const gpu::Texture& finer = i == 0 ? source : levels_[i - 1].average;
-    const gpu::Texture& coarser = coarsest                    ? level.average
+    const gpu::Texture& coarser = coarsest                  ? level.average
                                   : i + 2 == levels_.size() ? levels_[i + 1].average
                                                             : levels_[i + 1].spread;
     level.down.setTexture(0, finer, *sampler_);

@@ -28,7 +28,8 @@ FrameLight makeFrameLight(const View& view, const Harmonics& sky, bool ground) {
       glm::max(valueAt(irradianceHarmonics(sky), {0.0f, 1.0f, 0.0f}), glm::vec3(0.0f)) / pi;
   Harmonics all = sky;
   if (ground) {
-    const glm::vec3 reflectance = view.terms.textures ? shared::groundMeanColor() : glm::vec3(0.18f);
+    const glm::vec3 reflectance =
+        view.terms.textures ? shared::groundMeanColor() : glm::vec3(0.18f);
     const Harmonics below = groundHarmonics(
         reflectance * (light.open_sky + light.sun * std::max(light.to_sun.y, 0.0f)), sky.bands);
     for (std::size_t i = 0; i < all.weights.size(); ++i) all.weights[i] += below.weights[i];
@@ -36,9 +37,8 @@ FrameLight makeFrameLight(const View& view, const Harmonics& sky, bool ground) {
   light.open_light = irradianceHarmonics(all);
   for (glm::vec3& weight : light.open_light.weights) weight /= pi;
   // A disk much smaller than the sun's is cut, lest what it lights sink below the smallest half.
-  light.brightest =
-      std::max({largest(light.open_sky), largest(light.sun),
-                std::min(largest(light.sun_disk), 0x1p16f * largest(light.sun))});
+  light.brightest = std::max({largest(light.open_sky), largest(light.sun),
+                              std::min(largest(light.sun_disk), 0x1p16f * largest(light.sun))});
   return light;
 }
 

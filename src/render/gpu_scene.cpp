@@ -5,8 +5,7 @@
 namespace verdure {
 
 GpuScene::GpuScene(const gpu::Device& device, const PackedScene& packed,
-                   vk::DescriptorSetLayout material_layout,
-                   const gpu::SetLayout& transfer_layout)
+                   vk::DescriptorSetLayout material_layout, const gpu::SetLayout& transfer_layout)
     : has_crown_normals_(!packed.crown_normals.empty()),
       draws_(packed.draws),
       grounds_(packed.grounds),
@@ -85,22 +84,20 @@ GpuScene::GpuScene(const gpu::Device& device, const PackedScene& packed,
 void GpuScene::bindVertices(const vk::raii::CommandBuffer& commands, NormalSource normals) const {
   const bool crown = normals == NormalSource::kCrown && has_crown_normals_;
   const gpu::Buffer& normal_stream = crown ? crown_normals_ : leaf_normals_;
-  commands.bindVertexBuffers(
-      0,
-      {*positions_.buffer, *normal_stream.buffer, *uvs_.buffer, *instances_.buffer,
-       *transfer_->light().buffer},
-      {0, 0, 0, 0, 0});
+  commands.bindVertexBuffers(0,
+                             {*positions_.buffer, *normal_stream.buffer, *uvs_.buffer,
+                              *instances_.buffer, *transfer_->light().buffer},
+                             {0, 0, 0, 0, 0});
   commands.bindIndexBuffer(*indices_.buffer, 0, vk::IndexType::eUint32);
 }
 
 std::vector<vk::VertexInputBindingDescription> GpuScene::bindings(bool transfer) {
-  return {{.binding = 0, .stride = sizeof(glm::vec3)},
-          {.binding = 1, .stride = sizeof(PackedNormal)},
-          {.binding = 2, .stride = sizeof(glm::vec2)},
-          {.binding = 3,
-           .stride = sizeof(PackedInstance),
-           .inputRate = vk::VertexInputRate::eInstance},
-          {.binding = 4, .stride = transfer ? 16u : 0u}};
+  return {
+      {.binding = 0, .stride = sizeof(glm::vec3)},
+      {.binding = 1, .stride = sizeof(PackedNormal)},
+      {.binding = 2, .stride = sizeof(glm::vec2)},
+      {.binding = 3, .stride = sizeof(PackedInstance), .inputRate = vk::VertexInputRate::eInstance},
+      {.binding = 4, .stride = transfer ? 16u : 0u}};
 }
 
 std::vector<vk::VertexInputAttributeDescription> GpuScene::attributes() {

@@ -13,10 +13,13 @@ struct Grid {
   int size = 0;
   std::vector<glm::vec3> light;
 
-  /// `at` in steps from the first point; false outside.
-  bool sample(const glm::vec2& at, glm::vec3& out) const {
+  /// `at` in steps from the first point; `open` outside, and towards it near the edge.
+  glm::vec3 sample(const glm::vec2& at, const glm::vec3& open) const {
+    constexpr float kFade = 0.1f;  // of the grid's side
     const float last = static_cast<float>(size - 1);
-    if (!(at.x >= 0.0f && at.y >= 0.0f && at.x <= last && at.y <= last)) return false;
+    if (!(at.x >= 0.0f && at.y >= 0.0f && at.x <= last && at.y <= last)) return open;
+    const glm::vec2 inside =
+        glm::smoothstep(glm::vec2(0.0f), glm::vec2(kFade), 0.5f - glm::abs(at / last - 0.5f));
     const glm::ivec2 low = glm::min(glm::ivec2(at), glm::ivec2(std::max(size - 2, 0)));
     const glm::ivec2 high = glm::min(low + 1, glm::ivec2(size - 1));
     const glm::vec2 f = at - glm::vec2(low);
@@ -24,16 +27,16 @@ struct Grid {
       return light[static_cast<std::size_t>(y) * static_cast<std::size_t>(size) +
                    static_cast<std::size_t>(x)];
     };
-    out = glm::mix(glm::mix(point(low.x, low.y), point(high.x, low.y), f.x),
-                   glm::mix(point(low.x, high.y), point(high.x, high.y), f.x), f.y);
-    return true;
+    const glm::vec3 here =
+        glm::mix(glm::mix(point(low.x, low.y), point(high.x, low.y), f.x),
+                 glm::mix(point(low.x, high.y), point(high.x, high.y), f.x), f.y);
+    return glm::mix(open, here, inside.x * inside.y);
   }
 };
 
 Grid evaluate(const PackedGround& ground, const std::vector<glm::vec2>& weights) {
   Grid grid{ground.transfer.size, {}};
-  const auto points =
-      static_cast<std::size_t>(grid.size) * static_cast<std::size_t>(grid.size);
+  const auto points = static_cast<std::size_t>(grid.size) * static_cast<std::size_t>(grid.size);
   grid.light.resize(points);
   parallelFor(points, 256, [&](std::size_t i) {
     grid.light[i] =
@@ -74,10 +77,9 @@ void GroundLight::update(const std::vector<PackedGround>& grounds, int scene_id,
       glm::vec3 light = open;
       for (std::size_t g = 0; g < grids.size(); ++g)
         for (const glm::vec2& place : grounds[g].places) {
-          glm::vec3 here;
           const GroundTransfer& transfer = grounds[g].transfer;
-          if (grids[g].sample((at - place - transfer.corner) / transfer.step, here))
-            light *= here / safe_open;
+          light *= grids[g].sample((at - place - transfer.corner) / transfer.step, safe_open) /
+                   safe_open;
         }
       map_.set(column, static_cast<int>(row), light);
     }

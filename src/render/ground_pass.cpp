@@ -29,8 +29,10 @@ void GroundPass::prepare(const gpu::Device& device, const FrameLayout& layout, c
 }
 
 void GroundPass::record(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,
-                        vk::DescriptorSet frame_set, const Terms& terms, const DrawKind& kind) const {
-  commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipelines_.at(termConstants(terms, kind)));
+                        vk::DescriptorSet frame_set, const Terms& terms,
+                        const DrawKind& kind) const {
+  commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
+                        *pipelines_.at(termConstants(terms, kind)));
   commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout.pipeline, 0, {frame_set},
                               nullptr);
   commands.draw(3 * kSlices, 1, 0, 0);

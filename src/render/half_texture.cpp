@@ -25,7 +25,8 @@ HalfTexture::HalfTexture(const gpu::Device& device, std::uint32_t width, std::ui
 void HalfTexture::set(int x, int y, const glm::vec3& color) {
   const glm::vec3 cut = glm::clamp(color, glm::vec3(0.0f), glm::vec3(kLargest));
   const std::uint64_t texel = glm::packHalf4x16(glm::vec4(cut, 1.0f));
-  const auto at = static_cast<std::size_t>(y) * texture_.request.width + static_cast<std::size_t>(x);
+  const auto at =
+      static_cast<std::size_t>(y) * texture_.request.width + static_cast<std::size_t>(x);
   std::memcpy(staging_.memory.mapped() + at * sizeof(texel), &texel, sizeof(texel));
 }
 

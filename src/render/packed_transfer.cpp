@@ -38,8 +38,9 @@ glm::vec3 vectorLight(std::span<const std::uint16_t> halves, int bands, std::siz
   glm::vec3 sum(0.0f);
   for (int c = 0; c < 3; ++c)
     for (std::uint32_t i = 0; i < count; ++i)
-      sum[c] += glm::unpackHalf1x16(halves[(v * count + i) * 3 + static_cast<std::size_t>(c)]) *
-                weights[static_cast<std::uint32_t>(c) * pairs(bands) + i / 2][static_cast<int>(i % 2)];
+      sum[c] +=
+          glm::unpackHalf1x16(halves[(v * count + i) * 3 + static_cast<std::size_t>(c)]) *
+          weights[static_cast<std::uint32_t>(c) * pairs(bands) + i / 2][static_cast<int>(i % 2)];
   return sum;
 }
 

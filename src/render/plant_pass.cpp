@@ -14,9 +14,9 @@ gpu::Constants constantsOf(const Draw& draw, const Terms& terms) {
   // A plant without baked light has its leaf normals in either stream: they are turned over.
   const bool leaf_normals = terms.normal == NormalSource::kLeaf || !draw.baked;
   // Without transfer vectors it is lit as well as can be: unbaked, the coefficient is 1.
-  const AmbientSource source =
-      terms.ambient_source == AmbientSource::kTransfer && !draw.transfer ? AmbientSource::kBaked
-                                                                         : terms.ambient_source;
+  const AmbientSource source = terms.ambient_source == AmbientSource::kTransfer && !draw.transfer
+                                   ? AmbientSource::kBaked
+                                   : terms.ambient_source;
   return termConstants(terms, {.ambient_source = source,
                                .transmission = draw.foliage && terms.transmission,
                                .flip_normal = draw.foliage && leaf_normals,
@@ -56,8 +56,7 @@ void PlantPass::record(const vk::raii::CommandBuffer& commands, const FrameLayou
   if (scene.draws().empty()) return;
   scene.bindVertices(commands, terms.normal);
   for (const Draw& draw : scene.draws()) {
-    commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
-                          *pipelines_.at(keyOf(draw, terms)));
+    commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipelines_.at(keyOf(draw, terms)));
     commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout.pipeline, 0,
                                 {frame_set, scene.materialSet(draw.material)}, nullptr);
     commands.pushConstants<shared::DrawUniforms>(

@@ -26,7 +26,7 @@ using PackedInstance = std::array<glm::vec4, 3>;
 /// One mesh at all places of its item.
 struct Draw {
   bool foliage = false;
-  bool baked = false;  ///< has crown normals; else they are the mesh's own
+  bool baked = false;     ///< has crown normals; else they are the mesh's own
   bool transfer = false;  ///< has transfer vectors
   bool alpha_test = false;
   bool normal_map = false;

@@ -33,8 +33,9 @@ void SkyImage::look(const std::shared_ptr<const Sky>& sky) {
   if (formula) {
     // The brightest are the sun's surroundings, or the horizon's.
     const glm::vec3 sun(sky->formula()->sun);
-    for (const glm::vec3& d : {sun, glm::normalize(sun * glm::vec3(1, 0, 1) + glm::vec3(0, 1e-3f, 1e-9f)),
-                               glm::vec3(0, 1, 0)})
+    for (const glm::vec3& d :
+         {sun, glm::normalize(sun * glm::vec3(1, 0, 1) + glm::vec3(0, 1e-3f, 1e-9f)),
+          glm::vec3(0, 1, 0)})
       brightest_ = std::max(brightest_, largest(sky->luminance(d)));
     return;
   }

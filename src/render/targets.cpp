@@ -17,13 +17,13 @@ gpu::Texture makeTarget(const gpu::Device& device, std::uint32_t width, std::uin
                         vk::Format format, vk::SampleCountFlagBits samples,
                         vk::ImageUsageFlags usage) {
   const bool depth = format == FrameLayout::kDepth;
-  return gpu::makeTexture(
-      device, {.format = format,
-               .width = width,
-               .height = height,
-               .samples = samples,
-               .usage = usage,
-               .aspect = depth ? vk::ImageAspectFlagBits::eDepth : kColorAspect});
+  return gpu::makeTexture(device,
+                          {.format = format,
+                           .width = width,
+                           .height = height,
+                           .samples = samples,
+                           .usage = usage,
+                           .aspect = depth ? vk::ImageAspectFlagBits::eDepth : kColorAspect});
 }
 
 void recordCopy(const vk::raii::CommandBuffer& commands, const gpu::Texture& from,

@@ -20,18 +20,10 @@ struct DrawKind {
 
 /// The specialisation constants, numbered as in src/shaders/terms.glsl.
 inline gpu::Constants termConstants(const Terms& terms, const DrawKind& kind) {
-  return {terms.ambient,
-          terms.diffuse,
-          terms.specular,
-          terms.shadow,
-          terms.textures,
-          static_cast<std::uint32_t>(kind.ambient_source),
-          kind.formula_sky,
-          kind.background,
-          kind.transmission,
-          kind.flip_normal,
-          kind.alpha_test,
-          kind.normal_map};
+  return {terms.ambient,    terms.diffuse,   terms.specular,
+          terms.shadow,     terms.textures,  static_cast<std::uint32_t>(kind.ambient_source),
+          kind.formula_sky, kind.background, kind.transmission,
+          kind.flip_normal, kind.alpha_test, kind.normal_map};
 }
 
 }  // namespace verdure

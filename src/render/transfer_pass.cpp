@@ -9,8 +9,8 @@ namespace {
 constexpr std::uint32_t kShader[] = {
 #include "shaders/transfer_pass.comp.inc"
 };
-constexpr std::uint32_t kGroupSize = 64;     // as in transfer_pass.comp
-constexpr std::size_t kBytesOfLight = 16;    // of one vertex
+constexpr std::uint32_t kGroupSize = 64;   // as in transfer_pass.comp
+constexpr std::size_t kBytesOfLight = 16;  // of one vertex
 
 }  // namespace
 

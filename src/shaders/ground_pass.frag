@@ -8,6 +8,9 @@
 #include "sun_visibility.glsl"
 
 layout(location = 0) in vec3 position;
+/// Where a covered sample lies: at the horizon the pixel's centre may lie above it, where the plane
+/// of the ground is behind the eye.
+layout(location = 1) centroid in vec3 covered;
 layout(location = 0) out vec4 out_color;
 
 /// A texture seen at a grazing angle: four taps along the long axis of the pixel's footprint, each
@@ -34,12 +37,12 @@ vec3 grass(vec2 p) {
 /// Light on the ground from the sky and from what stands on it; open where the map ends.
 vec3 mappedLight(vec3 p) {
   vec2 at = (p.xz - frame.ground_map.xy) * frame.ground_map.z;
-  vec2 edge = smoothstep(vec2(0.0), vec2(0.1), 0.5 - abs(at - 0.5));
-  return mix(frame.open_sky.rgb, textureLod(ground_light, at, 0.0).rgb, edge.x * edge.y);
+  bool open = any(lessThan(at, vec2(0.0))) || any(greaterThan(at, vec2(1.0)));
+  return open ? frame.open_sky.rgb : textureLod(ground_light, at, 0.0).rgb;
 }
 
 void main() {
-  vec3 to_eye = frame.eye.xyz - position;
+  vec3 to_eye = frame.eye.xyz - covered;
   float distance = length(to_eye);
   vec3 n = vec3(0.0, 1.0, 0.0);
   vec3 color = kTextures ? grass(position.xz) : vec3(0.18);

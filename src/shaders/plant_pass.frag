@@ -12,15 +12,15 @@ layout(set = 1, binding = 0) uniform sampler2D base_color;
 layout(set = 1, binding = 1) uniform sampler2D normal_map;
 layout(push_constant) uniform DrawBlock { DrawUniforms draw; };
 
+// Centroid: where a covered sample lies. At the edge of a small leaf the pixel's centre is outside,
+// where the texture is transparent and extrapolated light is anything, even negative.
 layout(location = 0) in vec3 position;
-layout(location = 1) in vec4 in_normal;
+layout(location = 1) centroid in vec4 in_normal;
 layout(location = 2) in vec2 uv;
-/// Where a covered sample lies: at the edge of a small leaf the pixel's centre is outside, and its
-/// texture coordinates lie beyond the leaf, where alpha is 0.
 layout(location = 3) centroid in vec2 covered_uv;
-/// Irradiance / pi on the side of the vertex normal and on the other, from transfer vectors.
-layout(location = 4) in vec3 front_light;
-layout(location = 5) in vec3 back_light;
+// Irradiance / pi on the side of the vertex normal and on the other, from transfer vectors.
+layout(location = 4) centroid in vec3 front_light;
+layout(location = 5) centroid in vec3 back_light;
 layout(location = 0) out vec4 out_color;
 
 /// Which of the four samples an alpha-cut surface covers. Written here rather than left to the
@@ -51,7 +51,8 @@ void main() {
   }
   vec3 color = kTextures ? texel.rgb * draw.color.rgb : draw.matt.rgb;
 
-  vec3 n = normalize(in_normal.xyz);
+  // Opposite normals of neighbouring vertices cancel somewhere between them.
+  vec3 n = dot(in_normal.xyz, in_normal.xyz) > 1e-12 ? normalize(in_normal.xyz) : vec3(0, 1, 0);
   if (kFlipNormal && !gl_FrontFacing) n = -n;
   if (kNormalMap && kTextures) {
     vec3 texel_n = textureGrad(normal_map, uv, uv_x, uv_y).xyz;
@@ -89,5 +90,5 @@ void main() {
   }
   vec3 lit = illumination(ambient, frame.sun_light.rgb, visibility, diffuse, draw.surface.z,
                           specular);
-  out_color = vec4(min(lit, vec3(65000.0)), 1.0);
+  out_color = vec4(clamp(lit, vec3(0.0), vec3(65000.0)), 1.0);
 }

@@ -11,16 +11,17 @@ layout(location = 2) in vec2 uv;
 layout(location = 6) in vec3 front_light;
 layout(location = 7) in vec3 back_light;
 layout(location = 0) out vec3 out_position;
-layout(location = 1) out vec4 out_normal;  // w = ambient coefficient
+layout(location = 1) centroid out vec4 out_normal;  // w = ambient coefficient
 layout(location = 2) out vec2 out_uv;
 layout(location = 3) centroid out vec2 out_covered_uv;
-layout(location = 4) out vec3 out_front_light;
-layout(location = 5) out vec3 out_back_light;
+layout(location = 4) centroid out vec3 out_front_light;
+layout(location = 5) centroid out vec3 out_back_light;
 
 void main() {
   vec4 decoded = decodeNormal(encoded_normal);
   out_position = worldFromPlant(position);
-  out_normal = vec4(normalize(worldNormal(decoded.xyz, kFlipNormal)), decoded.w);
+  vec3 normal = worldNormal(decoded.xyz, kFlipNormal);
+  out_normal = vec4(normal * inversesqrt(max(dot(normal, normal), 1e-30)), decoded.w);
   out_uv = uv;
   out_covered_uv = uv;
   out_front_light = front_light;

@@ -7,15 +7,15 @@
 layout(location = 0) in vec3 ray;
 layout(location = 0) out vec4 out_color;
 
-/// Share of a pixel that the sun's disk covers: a ramp one pixel wide, scaled so that the disk's
-/// light is the same however coarse the pixels are.
+/// Share of a pixel that the sun's disk covers: a ramp two pixels wide, scaled so that the disk's
+/// light is the same however coarse the pixels are and wherever it lies between them.
 float sunCoverage(vec3 direction) {
   float radius = frame.sun_disk.w;
   float pixel = max(length(dFdx(direction)), length(dFdy(direction)));
   float angle = 2.0 * asin(min(0.5 * length(direction - frame.to_sun.xyz), 1.0));
-  float drawn = max(radius, 0.5 * pixel);  // a smaller disk would fall between the pixels
-  float ramp = clamp((drawn - angle) / pixel + 0.5, 0.0, 1.0);
-  return ramp * radius * radius / (drawn * drawn + pixel * pixel / 12.0);
+  float drawn = max(radius, pixel);  // a smaller disk would fall between the pixels
+  float ramp = clamp((drawn - angle) / (2.0 * pixel) + 0.5, 0.0, 1.0);
+  return ramp * radius * radius / (drawn * drawn + pixel * pixel / 3.0);
 }
 
 void main() {

@@ -25,7 +25,7 @@ struct FrameUniforms {
   vec4 ray_down;
   vec4 ray_forward;
   vec4 open_light[9];  ///< shIrradiance() / pi by the open sky and the open ground
-  SkyFormula sky;  ///< kcd/m^2, where the sky has one
+  SkyFormula sky;      ///< kcd/m^2, where the sky has one
 };
 SHARED_SIZE(FrameUniforms, 560);
 

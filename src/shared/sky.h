@@ -16,7 +16,8 @@ SHARED_FUNCTION vec3 domeDirection(vec3 direction) {
 /// Where the upper half of the dome lies in an image of it: x = azimuth from +Z towards +X over
 /// [0, 1), y = 0 at the zenith and 1 at the horizon, proportional to the angle.
 SHARED_FUNCTION vec2 domeCoordinates(vec3 direction) {
-  float azimuth = direction.x == 0.0f && direction.z == 0.0f ? 0.0f : atan(direction.x, direction.z);
+  float azimuth =
+      direction.x == 0.0f && direction.z == 0.0f ? 0.0f : atan(direction.x, direction.z);
   return vec2(azimuth * 0.15915494f, acos(clamp(direction.y, 0.0f, 1.0f)) * 0.63661977f);
 }
 

@@ -7,6 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "base/parallel.h"
+#include "ray_plants.h"
 #include "rays/cut_table.h"
 #include "rays/ray_scene.h"
 #include "scene/scene.h"
@@ -18,11 +19,7 @@
 namespace verdure {
 namespace {
 
-glm::vec3 randomDirection(Random& random) {
-  const float z = random.vary(1.0f), angle = random.uniform(0.0f, glm::two_pi<float>());
-  const float r = std::sqrt(std::max(0.0f, 1.0f - z * z));
-  return {r * std::cos(angle), z, r * std::sin(angle)};
-}
+using namespace test;
 
 Ray randomRay(Random& random, const Bounds& box) {
   const auto pointIn = [&](float margin) {
@@ -33,78 +30,6 @@ Ray randomRay(Random& random, const Bounds& box) {
   ray.origin = pointIn(0.2f);
   ray.direction = glm::normalize(pointIn(0.0f) - ray.origin);
   return ray;
-}
-
-/// Alpha in [0, 1] as GL has it, from the definition, in double.
-double alphaOf(const Texture& texture, glm::dvec2 uv) {
-  const Image& image = texture.image;
-  const auto texel = [](long i, int size, bool clamps) {
-    if (clamps) return static_cast<int>(std::clamp<long>(i, 0, size - 1));
-    return static_cast<int>(((i % size) + size) % size);
-  };
-  const double x = uv.x * image.width - 0.5, y = uv.y * image.height - 0.5;
-  double sum = 0.0;
-  for (long j = 0; j < 2; ++j)
-    for (long i = 0; i < 2; ++i) {
-      const long cx = static_cast<long>(std::floor(x)) + i,
-                 cy = static_cast<long>(std::floor(y)) + j;
-      const double weight = (1.0 - std::abs(x - static_cast<double>(cx))) *
-                            (1.0 - std::abs(y - static_cast<double>(cy)));
-      sum += weight * image.at(texel(cx, image.width, texture.clamp_u),
-                               texel(cy, image.height, texture.clamp_v))[3];
-    }
-  return sum / 255.0;
-}
-
-struct BruteHit {
-  double distance = 1e300;
-  std::uint32_t mesh = 0, triangle = 0;
-  /// How far the ray passes from an edge or from the border of the cut: a near miss is no error.
-  double doubt = 1.0;
-};
-
-/// Moeller, Trumbore 1997, over all triangles, in double.
-BruteHit bruteTrace(const Plant& plant, const Ray& ray) {
-  BruteHit best;
-  const glm::dvec3 o(ray.origin), d(ray.direction);
-  for (std::uint32_t m = 0; m < plant.meshes.size(); ++m) {
-    const Mesh& mesh = plant.meshes[m];
-    const Material& material = plant.materials[mesh.material];
-    const bool cut = material.alpha_mode != AlphaMode::kOpaque && material.base_color_texture >= 0;
-    for (std::uint32_t t = 0; t < mesh.triangleCount(); ++t) {
-      const std::uint32_t* c = &mesh.indices[3 * t];
-      const glm::dvec3 p0(mesh.positions[c[0]]), e1 = glm::dvec3(mesh.positions[c[1]]) - p0,
-                                                 e2 = glm::dvec3(mesh.positions[c[2]]) - p0;
-      const glm::dvec3 h = glm::cross(d, e2);
-      const double det = glm::dot(e1, h);
-      if (det == 0.0) continue;
-      const glm::dvec3 s = o - p0;
-      const double u = glm::dot(s, h) / det;
-      const glm::dvec3 q = glm::cross(s, e1);
-      const double v = glm::dot(d, q) / det;
-      const double distance = glm::dot(e2, q) / det;
-      const double inside = std::min({u, v, 1.0 - u - v});
-      if (distance < -1e-6 || inside < -1e-5) continue;
-      double doubt = std::min(std::abs(inside), std::abs(distance));
-      bool solid = inside >= 0.0 && distance >= 0.0;
-      if (cut) {
-        const glm::dvec2 uv = glm::dvec2(mesh.uvs[c[0]]) * (1.0 - u - v) +
-                              glm::dvec2(mesh.uvs[c[1]]) * u + glm::dvec2(mesh.uvs[c[2]]) * v;
-        const double over =
-            alphaOf(plant.textures[static_cast<std::size_t>(material.base_color_texture)], uv) -
-            static_cast<double>(textureCutoff(material));
-        doubt = std::min(doubt, std::abs(over));
-        solid = solid && over >= 0.0;
-      }
-      if (distance < best.distance) best.doubt = std::min(best.doubt, doubt);
-      if (solid && distance < best.distance) {
-        best.distance = distance;
-        best.mesh = m;
-        best.triangle = t;
-      }
-    }
-  }
-  return best;
 }
 
 TEST(RayScene, HitsWhatALoopOverAllTrianglesHits) {
@@ -382,30 +307,6 @@ TEST(RayScene, TheGroundIsSeenFromAboveOnly) {
   down.t_max = 1e9f;
   scene.ground = false;
   EXPECT_FALSE(RayScene(scene).occluded(up));
-}
-
-/// A closed ball of triangles around a point.
-Mesh ball(const glm::vec3& center, float radius, int rings) {
-  Mesh mesh;
-  const auto columns = static_cast<std::uint32_t>(2 * rings);
-  for (int r = 0; r <= rings; ++r)
-    for (std::uint32_t c = 0; c <= columns; ++c) {
-      const double polar = glm::pi<double>() * r / rings;
-      const double angle = glm::two_pi<double>() * (c % columns) / columns;
-      const glm::dvec3 d(std::sin(polar) * std::cos(angle), std::cos(polar),
-                         std::sin(polar) * std::sin(angle));
-      mesh.positions.push_back(
-          center + radius * glm::vec3(r % rings == 0 ? glm::dvec3(0, r == 0 ? 1 : -1, 0) : d));
-      mesh.normals.push_back(glm::vec3(d));
-    }
-  for (std::uint32_t r = 0; r < static_cast<std::uint32_t>(rings); ++r)
-    for (std::uint32_t c = 0; c < columns; ++c) {
-      const std::uint32_t a = r * (columns + 1) + c, b = a + columns + 1;
-      if (r > 0) mesh.indices.insert(mesh.indices.end(), {a, a + 1, b + 1});
-      if (r + 1 < static_cast<std::uint32_t>(rings))
-        mesh.indices.insert(mesh.indices.end(), {a, b + 1, b});
-    }
-  return mesh;
 }
 
 TEST(RayScene, NoRayLeaksOutOfAClosedBallNorHitsWhereItStarts) {

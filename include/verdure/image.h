@@ -49,6 +49,11 @@ struct HdrImage {
   const glm::vec3& at(int x, int y) const { return const_cast<HdrImage*>(this)->at(x, y); }
 };
 
+/// [0, 1] to a byte, rounded; what lies outside is clamped.
+inline std::uint8_t toByte(float value) {
+  return static_cast<std::uint8_t>(glm::clamp(value, 0.0f, 1.0f) * 255.0f + 0.5f);
+}
+
 /// Decodes PNG or JPEG. Throws Error naming `where`.
 Image decodeImage(std::span<const std::uint8_t> file, const std::string& where);
 

@@ -2,10 +2,12 @@
 #define VERDURE_TRANSFER_H_
 
 #include <cstdint>
-#include <functional>
+#include <filesystem>
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
+#include "verdure/occlusion.h"
 #include "verdure/plant.h"
 
 /// Precomputed radiance transfer: Sloan, Kautz, Snyder, "Precomputed Radiance Transfer for
@@ -32,15 +34,42 @@ struct GroundTransfer {
   int size = 0;             ///< points along each side; 0 = none
   glm::vec2 corner{0.0f};   ///< x, z of the first point, m
   float step = 0.0f;        ///< m
+  float height = 0.0f;      ///< y, m
   TransferVectors vectors;  ///< front only
 };
 
 struct PlantTransfer {
   int bands = 0;                        ///< of front and back, 2 to 7
-  int bounce_bands = 0;                 ///< of the bounced parts, at most 3
+  int bounce_bands = 0;                 ///< of the bounced parts, at most 3; 0 = none
   std::vector<TransferVectors> meshes;  ///< parallel to Plant::meshes
   GroundTransfer ground;
 };
+
+struct TransferOptions {
+  RayOptions rays;       ///< with a ground height the ground reflects and receives; it is wanted
+  int bands = 5;         ///< 2 to 7
+  int bounce_bands = 3;  ///< 0 to 3, at most `bands`
+  int ground_size = 64;  ///< points along the ground's grid, 0 or 2 to 1024
+};
+
+/// Traces light to both sides of every leaf and the outside of wood, as occlusion.h has it: paths
+/// that leave the scene in direction d add Y_i(d) times their throughput to coefficient i. The
+/// light that surfaces pass on is thus that of every bounce, not of neighbours' vertices, and needs
+/// no memory but the result. Deterministic for any number of threads. Throws Error: options out of
+/// range, a result or scene over RayOptions::max_memory_bytes, cancelled.
+PlantTransfer bakeTransfer(const Plant& plant, const TransferOptions& options = {});
+
+/// The file beside a plant's file that holds its transfer: "oak.glb" has "oak.transfer".
+std::filesystem::path transferPath(const std::filesystem::path& plant_file);
+
+/// Writes transferPath(plant_file) (docs/transfer.md has the layout), atomically. Throws Error.
+void saveTransfer(const PlantTransfer& transfer, const Plant& plant,
+                  const std::filesystem::path& plant_file);
+
+/// Reads transferPath(plant_file); nothing if there is no such file. Throws Error if it is damaged,
+/// of another version, or of another plant.
+std::optional<PlantTransfer> loadTransfer(const std::filesystem::path& plant_file,
+                                          const Plant& plant);
 
 }  // namespace verdure
 

@@ -26,6 +26,10 @@ void addLoadOptions(CLI::App& command, LoadOptions& load) {
 
 void addBakeOptions(CLI::App& command, BakeParameters& bake, const char* group) {
   DensityOptions& o = bake.options;
+  command
+      .add_option("--field", bake.field,
+                  "optical-depth, or metaball (Luft et al. 2007; any of its parameters means it)")
+      ->group(group);
   command.add_option("--rho", o.rho, "Radius of influence of a leaf, m (default: from the crown)")
       ->group(group);
   command
@@ -55,9 +59,9 @@ void addBakeOptions(CLI::App& command, BakeParameters& bake, const char* group) 
       ->capture_default_str();
   command
       .add_option("--normals", bake.normals,
-                  "Leaf normals: surface-point, surface-vertex, ellipsoid or keep")
-      ->group(group)
-      ->capture_default_str();
+                  "Leaf normals: optical-depth; metaball: surface-point, surface-vertex, ellipsoid; "
+                  "keep; in bake bent (default: the field's first)")
+      ->group(group);
   command.add_option("--blend", o.blend, "0 = the leaf's normals, 1 = the crown's")
       ->group(group)
       ->capture_default_str();
@@ -125,10 +129,28 @@ int run(int argc, char** argv) {
   bake_app->add_option("-o,--output", bake.output, "File to write: .glb or .gltf")->required();
   addLoadOptions(*bake_app, bake.load);
   addBakeOptions(*bake_app, bake.bake, "Density field");
+  bake_app->add_flag("--fit", bake.bake.fit,
+                     "Choose the field's parameters by rays traced from some hundred vertices");
   bake_app->add_option("--surface", bake.surface,
                        "Use this surface instead of the field's: .obj .ply .glb");
   bake_app->add_option("--population", bake.population,
                        "Bake a group in one field: JSON layout (see docs/population.md)");
+  constexpr const char* kRayGroup = "Rays";
+  bake_app
+      ->add_option("--ambient", bake.rays.ambient,
+                   "Ambient coefficients: density, or ray-traced (slower, true)")
+      ->group(kRayGroup)
+      ->capture_default_str();
+  bake_app
+      ->add_option("--transfer", bake.rays.transfer_bands,
+                   "Trace transfer vectors of so many bands, 2 to 7, into OUTPUT's .transfer")
+      ->group(kRayGroup);
+  bake_app->add_option("--rays", bake.rays.rays, "Rays of each vertex and side of a leaf")
+      ->group(kRayGroup)
+      ->capture_default_str();
+  bake_app->add_option("--bounces", bake.rays.bounces, "Most surfaces that light meets on its way")
+      ->group(kRayGroup)
+      ->capture_default_str();
   bake_app->add_option("--report", bake.report, "Write every number of the bake as JSON");
   bake_app->add_flag("--color1", bake.color1, "Write the ambient coefficient as COLOR_1 too");
   bake_app->add_flag("--json", bake.json, "Print the report as JSON");
@@ -160,6 +182,24 @@ int run(int argc, char** argv) {
   addBakeOptions(*render_app, render.bake, kBakeGroup);
   render_app->add_flag("--json", render.json, "Print times as JSON");
 
+  CompareCommand compare;
+  CLI::App* compare_app = app.add_subcommand("compare", "Say how different two images are");
+  compare_app->add_option("reference", compare.reference, "Image: .png .jpg .exr .hdr")->required();
+  compare_app->add_option("test", compare.test, "Image of the same size")->required();
+  compare_app->add_option("--metric", compare.metric, "Of flip, psnr, ssim, by commas")
+      ->capture_default_str();
+  compare_app->add_option("--heatmap", compare.heatmap, "PNG of FLIP's map to write");
+  compare_app->add_option(
+      "--threshold", compare.threshold,
+      "Exit with 1 if the first metric is worse: flip above it, others below it");
+  compare_app
+      ->add_option("--pixels-per-degree", compare.pixels_per_degree,
+                   "FLIP: of the display as it is seen")
+      ->capture_default_str();
+  compare_app->add_option("--peak", compare.peak,
+                          "PSNR of HDR images: the peak (default: the reference's largest value)");
+  compare_app->add_flag("--json", compare.json, "Print JSON");
+
   FiguresCommand figures;
   CLI::App* figures_app = app.add_subcommand("figures", "Reproduce the figures of a paper");
   CLI::App* luft_app = figures_app->add_subcommand("luft", "Luft, Balzer, Deussen 2007: 1 to 6");
@@ -183,16 +223,24 @@ int run(int argc, char** argv) {
   }
   if (app.get_subcommands().empty())
     throw Error("command line", "no command is named",
-                "use grow, inspect, bake, render or figures; see " + help);
+                "use grow, inspect, bake, render, compare or figures; see " + help);
   if (*figures_app && !*luft_app)
     throw Error("figures", "no paper is named", "use luft; see verdure figures --help");
   for (const CLI::Option* option : render_app->get_options())
     if (option->get_group() == kBakeGroup && option->count() > 0) render.bake_again = true;
+  for (const char* name : {"--rho", "--tau", "--fraction", "--norm", "--grid", "--d-min", "--k-min",
+                           "--exponent", "--surface", "--population"}) {
+    const CLI::Option* const of_bake = bake_app->get_option(name);
+    if (of_bake->count() > 0) bake.bake.metaball_option = name;
+    const CLI::Option* const of_render = render_app->get_option_no_throw(name);
+    if (of_render != nullptr && of_render->count() > 0) render.bake.metaball_option = name;
+  }
   setThreadCount(threads);
   if (*grow_app) runGrow(grow);
   if (*inspect_app) runInspect(inspect);
   if (*bake_app) runBake(bake);
   if (*render_app) runRender(render);
+  if (*compare_app) return runCompare(compare);
   if (*luft_app) runLuftFigures(figures);
   return 0;
 }

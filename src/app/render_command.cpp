@@ -43,16 +43,6 @@ Terms parseTerms(const RenderCommand& command) {
   return terms;
 }
 
-/// Plants stand on the zero of their own heights, where strands may hang below it; those that were
-/// modelled around or away from it stand on their lowest point.
-float groundHeight(const Plant& plant) {
-  constexpr float kMostBelow = 0.25f;  // share of the height
-  const Bounds box = bounds(plant);
-  const bool from_zero = plant.origin == glm::dvec3(0.0) && box.min.y <= 0.0f &&
-                         -box.min.y < kMostBelow * box.size().y;
-  return from_zero ? 0.0f : box.min.y;
-}
-
 Camera parseCamera(const RenderCommand& command, const Scene& scene, float aspect) {
   const float fov = radians(static_cast<float>(command.fov_deg));
   if (command.camera == "auto")
@@ -64,6 +54,14 @@ Camera parseCamera(const RenderCommand& command, const Scene& scene, float aspec
 }
 
 }  // namespace
+
+float groundHeight(const Plant& plant) {
+  constexpr float kMostBelow = 0.25f;  // share of the height
+  const Bounds box = bounds(plant);
+  const bool from_zero = plant.origin == glm::dvec3(0.0) && box.min.y <= 0.0f &&
+                         -box.min.y < kMostBelow * box.size().y;
+  return from_zero ? 0.0f : box.min.y;
+}
 
 void checkOutput(const std::string& path, const std::vector<std::string>& extensions) {
   if (std::find(extensions.begin(), extensions.end(), std::filesystem::path(path).extension()) ==
@@ -143,7 +141,11 @@ void runRender(const RenderCommand& command) {
   if (command.shadow_map < 16)
     throw Error("--shadow-map", "must be at least 16 pixels", "2048 is usual");
   view.shadow_map_size = command.shadow_map;
+  // The preset `expressive` means the field of its paper.
+  const BakeField field = command.bake.fieldOr(
+      command.light == "expressive" ? BakeField::kMetaball : BakeField::kOpticalDepth);
   const DensityOptions bake_options = command.bake.checked();
+  const DepthOptions depth_options = command.bake.checkedDepth();
   checkOutput(command.output, {".png"});
 
   Progress progress("render");
@@ -159,9 +161,15 @@ void runRender(const RenderCommand& command) {
   double bake_seconds = 0.0;
   if (!light && baked_terms) {
     progress.show("baking");
-    DensityBake bake = bakeDensity(plant, bake_options);
-    light = std::move(bake.light);
-    bake_seconds = bake.report.seconds_total;
+    if (field == BakeField::kMetaball) {
+      DensityBake bake = bakeDensity(plant, bake_options);
+      light = std::move(bake.light);
+      bake_seconds = bake.report.seconds_total;
+    } else {
+      DepthBake bake = bakeOpticalDepth(plant, depth_options);
+      light = std::move(bake.light);
+      bake_seconds = bake.report.seconds_total;
+    }
   }
   // A baked file has no leaf normals any more: they are found again from its triangles.
   if (view.terms.normal == NormalSource::kLeaf)

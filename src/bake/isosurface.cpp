@@ -18,7 +18,7 @@ constexpr int kPaddedPoints = kPadded.x * kPadded.y * kPadded.z;
 
 // The coarse lattice pays when the radius still spans this many of its cells: with fewer, the
 // curvature bound rules out too little (bench/field_bench.cpp).
-constexpr float kCellsPerRadius = 5.0f;
+constexpr float kFineCellsPerRadius = 5.0f;
 
 int paddedIndex(int x, int y, int z) {
   return x + kPadded.x * (y + kPadded.y * z);
@@ -341,7 +341,7 @@ Surface DensityField::surface(const Lattice& lattice, float tau, std::size_t max
   int step = 1;
   if (state_->norm.kind == Norm::Kind::kL2)
     while (step < 16 &&
-           maxRadius() >= kCellsPerRadius * lattice.spacing * 2.0f * static_cast<float>(step))
+           maxRadius() >= kFineCellsPerRadius * lattice.spacing * 2.0f * static_cast<float>(step))
       step *= 2;
   stats.coarse_step = step;
   if (step == 1) {

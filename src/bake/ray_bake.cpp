@@ -76,7 +76,7 @@ void RayBake::run(std::size_t count, double begin, double end,
     const std::size_t so_far = done.fetch_add(last - first) + last - first;
     if (!options_.progress) return;
     // Whoever finds another thread telling goes on tracing.
-    if (const std::unique_lock lock(telling, std::try_to_lock); lock.owns_lock())
+    if (const std::unique_lock lock(telling, std::try_to_lock); lock.owns_lock() && !cancelled)
       if (!options_.progress(begin + (end - begin) * static_cast<double>(so_far) /
                                          static_cast<double>(count)))
         cancelled = true;

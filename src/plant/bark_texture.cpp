@@ -14,11 +14,6 @@ struct Texel {
   glm::vec3 color;
 };
 
-float ramp(float x, float low, float high) {
-  const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
-  return t * t * (3 - 2 * t);
-}
-
 /// Marks of elliptic form, one in a cell with probability `share`: 1 inside, 0 outside. `fill` is
 /// their half width by that of the cell, `aspect` their height by the cell's.
 float marks(float u, float v, int nu, int nv, float share, float fill, float aspect,
@@ -36,7 +31,7 @@ float marks(float u, float v, int nu, int nv, float share, float fill, float asp
       const float ex = dx / (fill * size), ey = dy / (aspect * (0.5f + 0.5f * size));
       const float d = std::sqrt(ex * ex + ey * ey);
       if (d >= 1) continue;
-      most = std::max(most, 1 - ramp(d, 0.55f, 1.0f));
+      most = std::max(most, 1 - glm::smoothstep(0.55f, 1.0f, d));
     }
   return most;
 }
@@ -49,7 +44,7 @@ Texel lenticels(const BarkLook& look, float u, float v, std::uint32_t seed) {
   const float eyes = marks(u + wobble, v + wobble, 3, 5, 0.3f, 0.34f, 0.26f, seed + 40);
   const float scars = marks(u, v + 2 * wobble, 3, 7, 0.3f, 0.55f, 0.16f, seed + 50);
   const float dark = std::max({0.72f * dashes, eyes * (0.8f + 0.2f * fine), 0.8f * scars});
-  glm::vec3 color = glm::mix(look.color, look.tint, ramp(broad, 0.4f, 0.75f));
+  glm::vec3 color = glm::mix(look.color, look.tint, glm::smoothstep(0.4f, 0.75f, broad));
   color *= 0.94f + 0.1f * fine;
   color = glm::mix(color, look.deep, 0.9f * dark);
   return {0.5f + 0.12f * fine + 0.1f * broad - 0.22f * dark, color};
@@ -64,7 +59,7 @@ Texel paper(const BarkLook& look, float u, float v, std::uint32_t seed) {
   const float ragged = 0.16f * (fractalNoise(u, v, 14, 14, 3, seed + 40) - 0.5f);
   const float patches = marks(u + ragged, v + 0.7f * ragged, 3, 4, 0.4f, 0.5f, 0.3f, seed + 50);
   const float dark = std::max({0.62f * lines, 0.8f * longer, patches});
-  glm::vec3 color = glm::mix(look.color, look.tint, 0.75f * ramp(broad, 0.5f, 0.85f));
+  glm::vec3 color = glm::mix(look.color, look.tint, 0.75f * glm::smoothstep(0.5f, 0.85f, broad));
   color *= 0.92f + 0.12f * strips;
   color = glm::mix(color, look.deep, 0.92f * dark);
   const float rough = fractalNoise(u, v, 20, 20, 3, seed + 70);
@@ -91,12 +86,12 @@ Texel ridged(const BarkLook& look, float u, float v, int ridges, int pieces, flo
   const float value = latticeValue(id, wrap(piece, pieces), seed + 8);
   const float width = 0.3f + 0.4f * valueNoise(u, v, 4, 4, seed + 9);  // of the furrows
   const float rough = 0.5f * (fine - 0.5f);
-  const float off_furrow = ramp(2 * std::min(x, 1 - x) + rough, 0.0f, width);
-  const float off_crack = ramp(2 * std::min(y, 1 - y) + rough, 0.0f, 0.3f);
+  const float off_furrow = glm::smoothstep(0.0f, width, 2 * std::min(x, 1 - x) + rough);
+  const float off_crack = glm::smoothstep(0.0f, 0.3f, 2 * std::min(y, 1 - y) + rough);
   const float top = off_furrow * (1 - crack_depth * (1 - off_crack));
   const float height = std::clamp(top * (0.62f + 0.2f * value) + 0.5f * (fine - 0.4f), 0.0f, 1.0f);
-  const float lichen = ramp(fractalNoise(u, v, 4, 4, 4, seed + 40), 0.54f, 0.72f) * top;
-  glm::vec3 color = glm::mix(look.deep, look.color, ramp(height, 0.0f, 0.62f));
+  const float lichen = glm::smoothstep(0.54f, 0.72f, fractalNoise(u, v, 4, 4, 4, seed + 40)) * top;
+  glm::vec3 color = glm::mix(look.deep, look.color, glm::smoothstep(0.0f, 0.62f, height));
   color = glm::mix(color, look.tint, 0.55f * std::max(lichen, 0.6f * value * top));
   color *= 0.76f + 0.42f * fine;
   return {height, color};
@@ -110,15 +105,15 @@ Texel plates(const BarkLook& look, float u, float v, std::uint32_t seed) {
   const float layers = fractalNoise(u + warp_u, v + warp_v, 9, 9, 3, seed + 20) * 5 + cell.value;
   const float step = layers - std::floor(layers);
   const float fine = fractalNoise(u, v, 36, 36, 3, seed + 30);
-  const float plate = ramp(cell.border + 0.14f * (fine - 0.5f), 0.0f, 0.17f);
-  const float height = std::clamp(
-      plate * (0.55f + 0.12f * std::floor(layers) / 5 + 0.16f * ramp(step, 0.0f, 0.25f)) +
-          0.12f * fine,
-      0.0f, 1.0f);
+  const float plate = glm::smoothstep(0.0f, 0.17f, cell.border + 0.14f * (fine - 0.5f));
+  const float height = std::clamp(plate * (0.55f + 0.12f * std::floor(layers) / 5 +
+                                           0.16f * glm::smoothstep(0.0f, 0.25f, step)) +
+                                      0.12f * fine,
+                                  0.0f, 1.0f);
   glm::vec3 flake =
       glm::mix(look.color, look.tint,
-               ramp(0.55f * cell.value + 0.45f * (std::floor(layers) / 5), 0.3f, 0.75f));
-  flake *= 0.93f + 0.08f * ramp(step, 0.0f, 0.5f);
+               glm::smoothstep(0.3f, 0.75f, 0.55f * cell.value + 0.45f * (std::floor(layers) / 5)));
+  flake *= 0.93f + 0.08f * glm::smoothstep(0.0f, 0.5f, step);
   glm::vec3 color = glm::mix(look.deep, flake, plate);
   color *= 0.86f + 0.28f * fine;
   return {height, color};
@@ -130,15 +125,11 @@ Texel smooth(const BarkLook& look, float u, float v, std::uint32_t seed) {
   const float broad = fractalNoise(u, v, 3, 3, 4, seed + 20);
   const float fine = fractalNoise(u, v, 40, 40, 3, seed + 30);
   const float pores = marks(u, v, 16, 26, 0.3f, 0.3f, 0.16f, seed + 40);
-  glm::vec3 color = glm::mix(look.color, look.tint, ramp(broad, 0.45f, 0.7f));
-  color = glm::mix(color, look.deep, 0.5f * ramp(stripes, 0.45f, 0.75f));
+  glm::vec3 color = glm::mix(look.color, look.tint, glm::smoothstep(0.45f, 0.7f, broad));
+  color = glm::mix(color, look.deep, 0.5f * glm::smoothstep(0.45f, 0.75f, stripes));
   color = glm::mix(color, look.deep, 0.45f * pores);
   color *= 0.88f + 0.22f * fine;
   return {0.5f + 0.2f * (0.5f - stripes) + 0.12f * fine + 0.12f * pores, color};
-}
-
-std::uint8_t toByte(float x) {
-  return static_cast<std::uint8_t>(std::clamp(x, 0.0f, 1.0f) * 255.0f + 0.5f);
 }
 
 }  // namespace

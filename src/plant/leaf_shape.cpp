@@ -2,18 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 
 namespace verdure {
 namespace {
 
-constexpr float kPi = 3.14159265f;
 constexpr float kStalkHalfWidth = 0.013f;
 constexpr int kSteps = 120;
-
-float ramp(float x, float low, float high) {
-  const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
-  return t * t * (3 - 2 * t);
-}
 
 /// Teeth: 0 at the root of a tooth, 1 at its tip, leaning forward.
 float tooth(float s, float count) {
@@ -23,18 +18,19 @@ float tooth(float s, float count) {
 
 /// An arch over [0, 1], 0 at both ends, with its top moved by `lean`.
 float arch(float s, float lean) {
-  return std::max(std::sin(kPi * std::pow(s, lean)), 0.0f);
+  return std::max(std::sin(glm::pi<float>() * std::pow(s, lean)), 0.0f);
 }
 
 /// Half the width of the blade at s in [0, 1] from its base to its tip, at most 0.485.
 float halfWidth(LeafShape shape, float s) {
   switch (shape) {
     case LeafShape::kElliptic:
-      return 0.48f * std::pow(arch(s, 1.1f), 0.8f) * (1 - 0.35f * ramp(s, 0.82f, 1.0f));
+      return 0.48f * std::pow(arch(s, 1.1f), 0.8f) * (1 - 0.35f * glm::smoothstep(0.82f, 1.0f, s));
     case LeafShape::kRound: {
       const float c = 2 * std::pow(s, 0.82f) - 1;
       const float round = std::sqrt(std::max(0.0f, 1 - c * c));
-      return (0.45f + 0.03f * tooth(s, 15)) * round * (1 - 0.55f * ramp(s, 0.86f, 0.99f));
+      return (0.45f + 0.03f * tooth(s, 15)) * round *
+             (1 - 0.55f * glm::smoothstep(0.86f, 0.99f, s));
     }
     case LeafShape::kLanceolate:
       return (0.46f + 0.02f * tooth(s, 26)) * std::pow(arch(s, 0.72f), 0.95f);
@@ -76,14 +72,14 @@ std::vector<glm::vec2> mirrored(const std::vector<glm::vec2>& right) {
 void addPalm(std::vector<glm::vec2>& right) {
   const glm::vec2 center = palmCenter();
   const auto at = [&](float angle_deg, float radius) {
-    const float a = angle_deg * kPi / 180;
+    const float a = angle_deg * glm::pi<float>() / 180;
     const glm::vec2 p = center + radius * glm::vec2(std::sin(a), std::cos(a));
     return glm::vec2(std::min(p.x, 0.49f), p.y);
   };
   right.push_back(at(160, 0.05f));
   for (int i = 3; i >= 0; --i) {
     const auto [angle, length] = kFingers[i];
-    const float radians = angle * kPi / 180;
+    const float radians = angle * glm::pi<float>() / 180;
     const glm::vec2 along(std::sin(radians), std::cos(radians));
     const glm::vec2 across(-along.y, along.x);  // anticlockwise: towards the middle finger
     const auto side = [&](float sign) {
@@ -91,7 +87,7 @@ void addPalm(std::vector<glm::vec2>& right) {
       std::vector<glm::vec2> points;
       for (int k = 0; k <= 14; ++k) {
         const float f = 0.34f + 0.63f * static_cast<float>(k) / 14;
-        const float body = std::sin(kPi * std::pow((f - 0.1f) / 0.9f, 0.9f));
+        const float body = std::sin(glm::pi<float>() * std::pow((f - 0.1f) / 0.9f, 0.9f));
         const float width = 0.2f * length * body * (k % 2 == 0 ? 1.0f : 0.86f);
         const glm::vec2 p = center + along * (f * length) + sign * across * width;
         points.emplace_back(std::min(p.x, 0.49f), p.y);
@@ -119,7 +115,7 @@ std::vector<glm::vec2> palmTips() {
   for (const auto& [angle, length] : kFingers)
     for (const float side : {1.0f, -1.0f}) {
       if (angle == 0 && side < 0) continue;
-      const float a = angle * kPi / 180;
+      const float a = angle * glm::pi<float>() / 180;
       tips.push_back(palmCenter() + length * glm::vec2(side * std::sin(a), std::cos(a)));
     }
   return tips;

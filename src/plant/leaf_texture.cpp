@@ -13,11 +13,6 @@ namespace {
 
 constexpr int kRowsPerPixel = 8;  ///< supersampling of coverage across rows; exact along them
 
-float ramp(float x, float low, float high) {
-  const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
-  return t * t * (3 - 2 * t);
-}
-
 /// Adds the coverage of row `y` by a polygon in pixels (even-odd rule) to `row`.
 void coverRow(const std::vector<glm::vec2>& polygon, int y, std::vector<float>& row) {
   std::vector<float> crossings;
@@ -52,7 +47,7 @@ float distanceToSegment(const glm::vec2& p, const glm::vec2& a, const glm::vec2&
 
 /// How much of a vein is at a place: 1 on it, 0 beyond `width` (in leaf lengths).
 float line(float distance, float width) {
-  return 1 - ramp(distance, 0.45f * width, width);
+  return 1 - glm::smoothstep(0.45f * width, width, distance);
 }
 
 struct Veins {
@@ -107,13 +102,9 @@ glm::vec2 veinsAt(LeafShape shape, float x, float y, float leaf_scale_x) {
   const float phase = (root - kLeafStalk) / veins.spacing + (x > 0 ? 0.5f : 0.0f);
   const float first = x > 0 ? 0.4f : -0.1f;
   float side = line(std::abs(phase - std::round(phase)) * veins.spacing * sine,
-                    fine * 0.0085f * (1.1f - ramp(std::abs(x), 0.0f, 0.5f)));
+                    fine * 0.0085f * (1.1f - glm::smoothstep(0.0f, 0.5f, std::abs(x))));
   if (std::round(phase) < first || y < kLeafStalk || root > 0.97f) side = 0;
   return {main, side};
-}
-
-std::uint8_t toByte(float x) {
-  return static_cast<std::uint8_t>(std::clamp(x, 0.0f, 1.0f) * 255.0f + 0.5f);
 }
 
 /// A needle as a thin four-sided polygon in pixels, with its own brightness.
@@ -220,7 +211,7 @@ void paintBlade(LeafShape shape, const LeafLook& look, float leaf_scale_x, int s
       const float grain = fractalNoise(u, v, 60, 60, 2, seed + 9);
       glm::vec3 color =
           glm::mix(look.color, look.other,
-                   std::clamp(turned + 0.5f * (ramp(mottle, 0.42f, 0.75f)), 0.0f, 1.0f));
+                   std::clamp(turned + 0.5f * (glm::smoothstep(0.42f, 0.75f, mottle)), 0.0f, 1.0f));
       color *= bright * (0.9f + 0.1f * mottle + 0.12f * grain);
       // The blade is paler along its veins, as if quilted.
       color = glm::mix(color, look.vein, 0.38f * veins.y);

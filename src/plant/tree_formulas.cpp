@@ -1,23 +1,20 @@
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 
 #include "plant/weber_penn.h"
 
 namespace verdure {
-namespace {
-
-constexpr float kPi = 3.14159265358979f;
-
-}  // namespace
+namespace {}  // namespace
 
 float shapeRatio(int shape, float ratio, const TreeParameters& p) {
   switch (shape) {
     case 0:
       return 0.2f + 0.8f * ratio;
     case 1:
-      return 0.2f + 0.8f * std::sin(kPi * ratio);
+      return 0.2f + 0.8f * std::sin(glm::pi<float>() * ratio);
     case 2:
-      return 0.2f + 0.8f * std::sin(0.5f * kPi * ratio);
+      return 0.2f + 0.8f * std::sin(0.5f * glm::pi<float>() * ratio);
     case 3:
       return 1.0f;
     case 4:

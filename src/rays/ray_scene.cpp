@@ -465,7 +465,7 @@ glm::vec3 RayScene::originOff(const glm::vec3& position, const glm::vec3& normal
 
 float RayScene::originOffset(const glm::vec3& position) const {
   const glm::vec3 size = glm::abs(position);
-  return std::max({size.x, size.y, size.z, state_->least_size, 1e-6f}) * 0x1p-19f;
+  return std::max({size.x, size.y, size.z, state_->least_size, 1e-6f}) * 0x1p-21f;
 }
 
 std::size_t RayScene::memoryBytes() const {

@@ -96,7 +96,7 @@ class RayScene {
 
   /// Where a ray starts that leaves a point of a surface towards the side of `normal` (unit, the
   /// triangle's, turned to that side): so little off the surface that rounding cannot put it on or
-  /// behind it, about 2^-19 of the coordinates' size.
+  /// behind it, about 2^-21 of the coordinates' size.
   glm::vec3 originOff(const glm::vec3& position, const glm::vec3& normal) const;
 
   /// How far that is, m.

@@ -5,21 +5,41 @@
 #include <glm/gtc/constants.hpp>
 
 #include "base/parallel.h"
+#include "reference/exposure.h"
+#include "reference/separable_filter.h"
 #include "shared/color.h"
 #include "verdure/compare.h"
-#include "verdure/error.h"
 
-// FLIP, the LDR variant. Section and equation numbers are those of Andersson et al. 2020.
+// FLIP. Section and equation numbers are those of Andersson et al. 2020.
 
 namespace verdure {
 namespace {
 
-using Plane = std::vector<glm::vec3>;
 using Kernel = std::vector<float>;  ///< odd length, centred
+using Plane = Channel<float>;
 
-struct Size {
-  int width, height;
+/// An image of three channels.
+struct Planes {
+  std::array<Plane, 3> channels;
+
+  Planes(int width, int height) { channels.fill(Plane(width, height)); }
+  int width() const { return channels[0].width; }
+  int height() const { return channels[0].height; }
+  glm::vec3 at(int x, int y) const {
+    return {channels[0].row(y)[x], channels[1].row(y)[x], channels[2].row(y)[x]};
+  }
+  void set(int x, int y, const glm::vec3& value) {
+    for (int c = 0; c < 3; ++c) channels[static_cast<std::size_t>(c)].row(y)[x] = value[c];
+  }
 };
+
+/// body(x, y) for each pixel, rows in parallel.
+template <class Body>
+void forPixels(int width, int height, const Body& body) {
+  parallelFor(static_cast<std::size_t>(height), 8, [&](std::size_t y) {
+    for (int x = 0; x < width; ++x) body(x, static_cast<int>(y));
+  });
+}
 
 const glm::vec3 kWhite{0.950428545f, 1.0f, 1.088900371f};  // D65, XYZ
 
@@ -59,38 +79,7 @@ glm::vec3 huntLabFromLinear(const glm::vec3& c) {
 
 float hyab(const glm::vec3& a, const glm::vec3& b) {
   const glm::vec3 d = a - b;
-  return std::abs(d.x) + std::hypot(d.y, d.z);
-}
-
-/// One channel filtered by a separable kernel; beyond the border the border's pixel repeats.
-std::vector<float> filtered(const std::vector<float>& in, const Size& size, const Kernel& across,
-                            const Kernel& down) {
-  const auto w = static_cast<std::size_t>(size.width);
-  const auto pass = [&](const std::vector<float>& source, const Kernel& kernel, bool horizontal) {
-    std::vector<float> out(source.size());
-    const int radius = static_cast<int>(kernel.size() / 2);
-    parallelFor(static_cast<std::size_t>(size.height), 8, [&](std::size_t y) {
-      for (int x = 0; x < size.width; ++x) {
-        float sum = 0.0f;
-        for (int k = -radius; k <= radius; ++k) {
-          const int xx = horizontal ? std::clamp(x + k, 0, size.width - 1) : x;
-          const int yy = horizontal ? static_cast<int>(y)
-                                    : std::clamp(static_cast<int>(y) + k, 0, size.height - 1);
-          sum += kernel[static_cast<std::size_t>(k + radius)] *
-                 source[static_cast<std::size_t>(yy) * w + static_cast<std::size_t>(xx)];
-        }
-        out[y * w + static_cast<std::size_t>(x)] = sum;
-      }
-    });
-    return out;
-  };
-  return pass(pass(in, across, true), down, false);
-}
-
-std::vector<float> channel(const Plane& plane, int c) {
-  std::vector<float> out(plane.size());
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = plane[i][c];
-  return out;
+  return std::abs(d.x) + std::sqrt(d.y * d.y + d.z * d.z);
 }
 
 /// exp(-pi^2 x^2 / b) at the pixels of a display, not normalised.
@@ -109,8 +98,9 @@ float sumOf(const Kernel& kernel) {
   return sum;
 }
 
-/// 4.1.1: blur by the contrast sensitivity of the three channels, then linear RGB in [0, 1].
-Plane contrastFiltered(const Plane& ycxcz, const Size& size, float pixels_per_degree) {
+/// 4.1.1: blur by the contrast sensitivity of the three channels, then linear RGB in [0, 1], and
+/// the colours that are compared (4.1.2, 4.1.3).
+Planes seenColors(const Planes& ycxcz, float pixels_per_degree) {
   struct Sensitivity {
     float a1, b1, a2, b2;
   };
@@ -118,11 +108,10 @@ Plane contrastFiltered(const Plane& ycxcz, const Size& size, float pixels_per_de
       {{1.0f, 0.0047f, 0.0f, 1e-5f}, {1.0f, 0.0053f, 0.0f, 1e-5f}, {34.1f, 0.04f, 13.5f, 0.025f}}};
   const int radius = static_cast<int>(std::ceil(
       3.0f * std::sqrt(0.04f / (2.0f * glm::pi<float>() * glm::pi<float>())) * pixels_per_degree));
-  Plane out(ycxcz.size());
-  for (int c = 0; c < 3; ++c) {
-    const Sensitivity& s = kChannels[static_cast<std::size_t>(c)];
-    const std::vector<float> in = channel(ycxcz, c);
-    std::array<std::vector<float>, 2> parts;
+  Planes out(ycxcz.width(), ycxcz.height());
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Sensitivity& s = kChannels[c];
+    std::array<Plane, 2> parts;
     std::array<float, 2> weights{};
     for (std::size_t g = 0; g < 2; ++g) {
       const float a = g == 0 ? s.a1 : s.a2, b = g == 0 ? s.b1 : s.b2;
@@ -131,24 +120,26 @@ Plane contrastFiltered(const Plane& ycxcz, const Size& size, float pixels_per_de
       const float sum = sumOf(kernel);
       for (float& k : kernel) k /= sum;
       weights[g] = a * std::sqrt(glm::pi<float>() / b) * sum * sum;
-      parts[g] = filtered(in, size, kernel, kernel);
+      parts[g] = filtered(ycxcz.channels[c], kernel, kernel);
     }
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      float value = weights[0] * parts[0][i];
-      if (!parts[1].empty()) value += weights[1] * parts[1][i];
-      out[i][c] = value / (weights[0] + weights[1]);
-    }
+    out.channels[c] = std::move(parts[0]);
+    if (weights[1] == 0.0f) continue;
+    const float share = weights[0] / (weights[0] + weights[1]);
+    for (std::size_t i = 0; i < out.channels[c].values.size(); ++i)
+      out.channels[c].values[i] = glm::mix(parts[1].values[i], out.channels[c].values[i], share);
   }
-  for (glm::vec3& c : out) c = glm::clamp(linearFromYcxcz(c), 0.0f, 1.0f);
+  forPixels(out.width(), out.height(), [&](int x, int y) {
+    out.set(x, y, huntLabFromLinear(glm::clamp(linearFromYcxcz(out.at(x, y)), 0.0f, 1.0f)));
+  });
   return out;
 }
 
 /// 4.2: strength of edges and of points in the lightness.
 struct Features {
-  std::vector<float> edges, points;
+  Plane edges, points;
 };
 
-Features features(const Plane& ycxcz, const Size& size, float pixels_per_degree) {
+Features features(const Planes& ycxcz, float pixels_per_degree) {
   const float deviation = 0.5f * 0.082f * pixels_per_degree;
   const int radius = static_cast<int>(std::ceil(3.0f * deviation));
   Kernel gauss, edge, point;
@@ -166,12 +157,14 @@ Features features(const Plane& ycxcz, const Size& size, float pixels_per_degree)
     for (const float k : *kernel) (k > 0.0f ? positive : negative) += std::abs(k);
     for (float& k : *kernel) k /= k > 0.0f ? positive : negative;
   }
-  std::vector<float> lightness = channel(ycxcz, 0);
-  for (float& y : lightness) y = (y + 16.0f) / 116.0f;
+  Plane lightness = ycxcz.channels[0];
+  for (float& y : lightness.values) y = (y + 16.0f) / 116.0f;
   const auto strength = [&](const Kernel& kernel) {
-    std::vector<float> across = filtered(lightness, size, kernel, gauss);
-    const std::vector<float> down = filtered(lightness, size, gauss, kernel);
-    for (std::size_t i = 0; i < across.size(); ++i) across[i] = std::hypot(across[i], down[i]);
+    Plane across = filtered(lightness, kernel, gauss);
+    const Plane down = filtered(lightness, gauss, kernel);
+    for (std::size_t i = 0; i < across.values.size(); ++i)
+      across.values[i] =
+          std::sqrt(across.values[i] * across.values[i] + down.values[i] * down.values[i]);
     return across;
   };
   return {strength(edge), strength(point)};
@@ -185,46 +178,93 @@ float colorDifference(float difference, float most) {
   return pt + (difference - knee) / (most - knee) * (1.0f - pt);
 }
 
-Plane ycxczOf(const Image& image) {
-  Plane plane(image.rgba.size() / 4);
-  parallelFor(plane.size(), 4096, [&](std::size_t i) {
-    glm::vec3 c;
-    for (int k = 0; k < 3; ++k)
-      c[k] = shared::linearFromSrgb(
-          static_cast<float>(image.rgba[4 * i + static_cast<std::size_t>(k)]) / 255.0f);
-    plane[i] = ycxczFromLinear(c);
+/// What a viewer sees of one image.
+struct Seen {
+  Planes colors;
+  Features features;
+
+  Seen(const Planes& ycxcz, float pixels_per_degree)
+      : colors(seenColors(ycxcz, pixels_per_degree)),
+        features(verdure::features(ycxcz, pixels_per_degree)) {}
+};
+
+ErrorMap difference(const Seen& a, const Seen& b) {
+  constexpr float kColorExponent = 0.7f;  // the features' is 0.5
+  const float most =
+      std::pow(hyab(huntLabFromLinear({0, 1, 0}), huntLabFromLinear({0, 0, 1})), kColorExponent);
+  ErrorMap map{a.colors.width(), a.colors.height(), {}};
+  map.values.resize(static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height));
+  forPixels(map.width, map.height, [&](int x, int y) {
+    const float color =
+        colorDifference(std::pow(hyab(a.colors.at(x, y), b.colors.at(x, y)), kColorExponent), most);
+    const auto apart = [x, y](const Plane& p, const Plane& q) {
+      return std::abs(p.row(y)[x] - q.row(y)[x]);
+    };
+    const float feature = std::sqrt(std::max(apart(a.features.edges, b.features.edges),
+                                             apart(a.features.points, b.features.points)) /
+                                    std::sqrt(2.0f));
+    map.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width) +
+               static_cast<std::size_t>(x)] = std::pow(color, 1.0f - feature);
   });
-  return plane;
+  return map;
+}
+
+Planes ycxczOf(const Image& image) {
+  std::array<float, 256> linear;
+  for (std::size_t i = 0; i < linear.size(); ++i)
+    linear[i] = shared::linearFromSrgb(static_cast<float>(i) / 255.0f);
+  Planes planes(image.width, image.height);
+  forPixels(image.width, image.height, [&](int x, int y) {
+    const std::uint8_t* p = image.at(x, y);
+    planes.set(x, y, ycxczFromLinear({linear[p[0]], linear[p[1]], linear[p[2]]}));
+  });
+  return planes;
+}
+
+Planes ycxczOf(const HdrImage& image, float exposure) {
+  const float factor = std::exp2(exposure);
+  Planes planes(image.width, image.height);
+  forPixels(image.width, image.height, [&](int x, int y) {
+    planes.set(x, y, ycxczFromLinear(aces(image.at(x, y) * factor)));
+  });
+  return planes;
 }
 
 }  // namespace
 
+ErrorMap flip(const Image& a, const Image& b, float pixels_per_degree) {
+  checkComparable(a, b);
+  return difference(Seen(ycxczOf(a), pixels_per_degree), Seen(ycxczOf(b), pixels_per_degree));
+}
+
 double meanFlip(const Image& a, const Image& b, float pixels_per_degree) {
-  if (a.width != b.width || a.height != b.height || a.empty())
-    throw Error("compare", "the images have different sizes or no pixels",
-                "compare pictures of one size");
-  constexpr float kColorExponent = 0.7f, kFeatureExponent = 0.5f;
-  const Size size{a.width, a.height};
-  const Plane seen_a = ycxczOf(a), seen_b = ycxczOf(b);
-  const Plane smooth_a = contrastFiltered(seen_a, size, pixels_per_degree);
-  const Plane smooth_b = contrastFiltered(seen_b, size, pixels_per_degree);
-  const Features features_a = features(seen_a, size, pixels_per_degree);
-  const Features features_b = features(seen_b, size, pixels_per_degree);
-  const float most =
-      std::pow(hyab(huntLabFromLinear({0, 1, 0}), huntLabFromLinear({0, 0, 1})), kColorExponent);
-  double sum = 0.0;
-  for (std::size_t i = 0; i < seen_a.size(); ++i) {
-    const float color = colorDifference(
-        std::pow(hyab(huntLabFromLinear(smooth_a[i]), huntLabFromLinear(smooth_b[i])),
-                 kColorExponent),
-        most);
-    const float feature = std::pow(std::max(std::abs(features_a.edges[i] - features_b.edges[i]),
-                                            std::abs(features_a.points[i] - features_b.points[i])) /
-                                       std::sqrt(2.0f),
-                                   kFeatureExponent);
-    sum += static_cast<double>(std::pow(color, 1.0f - feature));
+  return flip(a, b, pixels_per_degree).mean();
+}
+
+HdrFlip hdrFlip(const HdrImage& reference, const HdrImage& test, float pixels_per_degree) {
+  checkComparable(reference, test);
+  constexpr float kTone = 0.85f;
+  const LuminanceRange range = luminanceRange(reference);
+  HdrFlip result;
+  if (range.most > 0.0f) {
+    result.start_exposure = std::log2(acesInverse(kTone) / range.most);
+    result.stop_exposure = std::log2(acesInverse(kTone) / range.median);
   }
-  return sum / static_cast<double>(seen_a.size());
+  const float stops = result.stop_exposure - result.start_exposure;
+  result.exposures = std::max(2, static_cast<int>(std::ceil(stops)));
+  for (int i = 0; i < result.exposures; ++i) {
+    const float exposure = result.start_exposure +
+                           stops * static_cast<float>(i) / static_cast<float>(result.exposures - 1);
+    ErrorMap map = difference(Seen(ycxczOf(reference, exposure), pixels_per_degree),
+                              Seen(ycxczOf(test, exposure), pixels_per_degree));
+    if (i == 0) {
+      result.map = std::move(map);
+      continue;
+    }
+    for (std::size_t p = 0; p < map.values.size(); ++p)
+      result.map.values[p] = std::max(result.map.values[p], map.values[p]);
+  }
+  return result;
 }
 
 }  // namespace verdure

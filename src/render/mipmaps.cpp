@@ -97,10 +97,6 @@ Level halve(const Level& fine) {
   return coarse;
 }
 
-std::uint8_t toByte(float value) {
-  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f));
-}
-
 gpu::MipLevel toBytes(const Level& level, bool srgb, bool alpha) {
   gpu::MipLevel out{static_cast<std::uint32_t>(level.width),
                     static_cast<std::uint32_t>(level.height),

@@ -38,10 +38,10 @@ enum class BakeField { kMetaball, kOpticalDepth };
 /// The parameters of the bake as the command line gives them; `options` reads them.
 struct BakeParameters {
   DensityOptions options;
-  std::string field;             ///< metaball or optical-depth; empty: as fieldOr() finds
-  std::string metaball_option;   ///< one that was given and that only the metaball field has
+  std::string field;            ///< metaball or optical-depth; empty: as fieldOr() finds
+  std::string metaball_option;  ///< one that was given and that only the metaball field has
   std::string norm = "2";
-  std::string normals;           ///< empty: the field's own
+  std::string normals;  ///< empty: the field's own
   bool fit = false;
   double max_memory_mib = 4096;
 

@@ -58,9 +58,10 @@ void addBakeOptions(CLI::App& command, BakeParameters& bake, const char* group) 
       ->group(group)
       ->capture_default_str();
   command
-      .add_option("--normals", bake.normals,
-                  "Leaf normals: optical-depth; metaball: surface-point, surface-vertex, ellipsoid; "
-                  "keep; in bake bent (default: the field's first)")
+      .add_option(
+          "--normals", bake.normals,
+          "Leaf normals: optical-depth; metaball: surface-point, surface-vertex, ellipsoid; "
+          "keep; in bake bent (default: the field's first)")
       ->group(group);
   command.add_option("--blend", o.blend, "0 = the leaf's normals, 1 = the crown's")
       ->group(group)

@@ -153,7 +153,8 @@ void bakePopulation(const BakeCommand& command) {
                 "bake each plant alone");
   command.bake.fieldOr(BakeField::kMetaball);  // the optical-depth field knows no neighbours
   if (command.bake.fit)
-    throw Error("--fit", "cannot be used with --population", "fit one plant and pass its parameters");
+    throw Error("--fit", "cannot be used with --population",
+                "fit one plant and pass its parameters");
   DensityOptions options = command.bake.checked();
   const auto [plants, placements] = readPopulation(command);
   for (std::size_t i = 0; i < placements.size(); ++i)
@@ -278,8 +279,8 @@ DepthOptions BakeParameters::checkedDepth() const {
     return named.checked();
   }();
   DepthOptions o;
-  o.normals = common.normals == CrownNormals::kKeep ? CrownNormals::kKeep
-                                                    : CrownNormals::kOpticalDepth;
+  o.normals =
+      common.normals == CrownNormals::kKeep ? CrownNormals::kKeep : CrownNormals::kOpticalDepth;
   o.blend = common.blend;
   o.seed = common.seed;
   o.max_memory_bytes = common.max_memory_bytes;
@@ -321,20 +322,24 @@ namespace {
 std::string lineOf(const DensityReport& r) {
   return fmt::format(
       "{} leaves, rho {:.3g} m, tau {:.3g}, d_min {:.3g}; surface of {} vertices{}; "
-      "mean ambient {:.2f}; baked in {:.2f} s",
+      "mean ambient {:.2f}{}; baked in {:.2f} s",
       r.leaves, r.rho, r.tau, r.d_min, r.surface_vertices,
       r.surface_vertices == 0 || r.watertight ? "" : ", not watertight", r.mean_ambient,
+      r.fit ? fmt::format("; fitted to {} traced vertices, RMS {:.3f} (before {:.3f})",
+                          r.fit->samples, r.fit->after.rms, r.fit->before.rms)
+            : "",
       r.seconds_total);
 }
 
 std::string lineOf(const DepthReport& r) {
-  return fmt::format("optical depth of {} surfels, up to {:.2g}; mean openness {:.2f}, mean ambient "
-                     "{:.2f}{}; baked in {:.2f} s",
-                     r.surfels, r.depth_max, r.mean_openness, r.mean_ambient,
-                     r.fit ? fmt::format("; fitted to {} traced vertices, RMS {:.3f} (before {:.3f})",
-                                         r.fit->samples, r.fit->after.rms, r.fit->before.rms)
-                           : "",
-                     r.seconds_total);
+  return fmt::format(
+      "optical depth of {} surfels, up to {:.2g}; mean openness {:.2f}, mean ambient "
+      "{:.2f}{}; baked in {:.2f} s",
+      r.surfels, r.depth_max, r.mean_openness, r.mean_ambient,
+      r.fit ? fmt::format("; fitted to {} traced vertices, RMS {:.3f} (before {:.3f})",
+                          r.fit->samples, r.fit->after.rms, r.fit->before.rms)
+            : "",
+      r.seconds_total);
 }
 
 Json jsonOf(const DepthModel& m) {
@@ -370,7 +375,10 @@ void runBake(const BakeCommand& command) {
     Progress progress("bake");
     if (field == BakeField::kMetaball) {
       showProgress(options, progress);
+      std::optional<DensityFit> fit;
+      if (parameters.fit) options = fitDensity(plant, options, &fit.emplace());
       DensityBake bake = bakeDensity(plant, options, surface ? &*surface : nullptr);
+      bake.report.fit = fit;
       light = std::move(bake.light);
       report = Json::parse(jsonOf(bake.report));
       line = lineOf(bake.report);
@@ -434,42 +442,48 @@ std::string jsonOf(const DepthReport& r) {
 }
 
 std::string jsonOf(const DensityReport& r) {
-  const Json json = {{"kind", "metaball"},
-                     {"rho_m", r.rho},
-                     {"tau", r.tau},
-                     {"d_min", r.d_min},
-                     {"k_min", r.k_min},
-                     {"exponent", r.exponent},
-                     {"leaves", r.leaves},
-                     {"leaves_without_area", r.skipped_leaves},
-                     {"generators", r.generators},
-                     {"field",
-                      {{"largest_sum_at_leaves", r.field_max_at_generators},
-                       {"min_at_vertices", r.field_min_at_vertices},
-                       {"max_at_vertices", r.field_max_at_vertices}}},
-                     {"grid",
-                      {{"points", {r.grid_points.x, r.grid_points.y, r.grid_points.z}},
-                       {"points_evaluated", r.grid_points_evaluated},
-                       {"voxel_m", r.voxel_m},
-                       {"bytes", r.grid_bytes}}},
-                     {"surface",
-                      {{"vertices", r.surface_vertices},
-                       {"triangles", r.surface_triangles},
-                       {"components", r.surface_components},
-                       {"watertight", r.watertight},
-                       {"degenerate_gradients", r.degenerate_gradients}}},
-                     {"vertices",
-                      {{"all", r.vertices},
-                       {"foliage", r.foliage_vertices},
-                       {"open", r.vertices_open},
-                       {"core", r.vertices_core},
-                       {"mean_ambient", r.mean_ambient}}},
-                     {"seconds",
-                      {{"generators", r.seconds_generators},
-                       {"surface", r.seconds_surface},
-                       {"ambient", r.seconds_ambient},
-                       {"normals", r.seconds_normals},
-                       {"total", r.seconds_total}}}};
+  Json json = {{"kind", "metaball"},
+               {"rho_m", r.rho},
+               {"tau", r.tau},
+               {"d_min", r.d_min},
+               {"k_min", r.k_min},
+               {"exponent", r.exponent},
+               {"leaves", r.leaves},
+               {"leaves_without_area", r.skipped_leaves},
+               {"generators", r.generators},
+               {"field",
+                {{"largest_sum_at_leaves", r.field_max_at_generators},
+                 {"min_at_vertices", r.field_min_at_vertices},
+                 {"max_at_vertices", r.field_max_at_vertices}}},
+               {"grid",
+                {{"points", {r.grid_points.x, r.grid_points.y, r.grid_points.z}},
+                 {"points_evaluated", r.grid_points_evaluated},
+                 {"voxel_m", r.voxel_m},
+                 {"bytes", r.grid_bytes}}},
+               {"surface",
+                {{"vertices", r.surface_vertices},
+                 {"triangles", r.surface_triangles},
+                 {"components", r.surface_components},
+                 {"watertight", r.watertight},
+                 {"degenerate_gradients", r.degenerate_gradients}}},
+               {"vertices",
+                {{"all", r.vertices},
+                 {"foliage", r.foliage_vertices},
+                 {"open", r.vertices_open},
+                 {"core", r.vertices_core},
+                 {"mean_ambient", r.mean_ambient}}},
+               {"seconds",
+                {{"generators", r.seconds_generators},
+                 {"surface", r.seconds_surface},
+                 {"ambient", r.seconds_ambient},
+                 {"normals", r.seconds_normals},
+                 {"total", r.seconds_total}}}};
+  if (r.fit)
+    json["fit"] = {{"samples", r.fit->samples},
+                   {"full_openness", r.fit->full},
+                   {"before", jsonOf(r.fit->before)},
+                   {"after", jsonOf(r.fit->after)},
+                   {"seconds", r.fit->seconds}};
   return json.dump(2);
 }
 

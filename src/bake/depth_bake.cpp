@@ -55,7 +55,8 @@ class Fans {
 
 void checkOptions(const DepthOptions& o) {
   if (!(o.blend >= 0.0f && o.blend <= 1.0f))
-    throw Error("optical-depth bake", "the blend must lie in [0, 1]", "1 takes the crown's normals");
+    throw Error("optical-depth bake", "the blend must lie in [0, 1]",
+                "1 takes the crown's normals");
   if (o.normals != CrownNormals::kOpticalDepth && o.normals != CrownNormals::kKeep)
     throw Error("optical-depth bake", "these normals come from the metaball field's surface",
                 "use --normals optical-depth or keep, or --field metaball");
@@ -148,8 +149,7 @@ DepthBake bakeOpticalDepth(const Plant& plant, const DepthOptions& options) {
   show("optical depth", 0.1);
   const OpticalDepthField field(surfels, field_options);
   report.surfels = field.surfelCount();
-  const std::vector<DepthSums> sums =
-      vertexDepths(plant, surfels, field, &report.terms_per_vertex);
+  const std::vector<DepthSums> sums = vertexDepths(plant, surfels, field, &report.terms_per_vertex);
   report.seconds_field = timer.lap();
   if (options.fit) {
     show("rays", 0.6);
@@ -168,16 +168,18 @@ DepthBake bakeOpticalDepth(const Plant& plant, const DepthOptions& options) {
     const bool leaves = mesh.kind == PartKind::kFoliage;
     const bool turned = leaves && options.normals == CrownNormals::kOpticalDepth;
     const DepthModel model = report.models.of(mesh.kind);
+    DepthModel crown = kCrownLight;
+    crown.k *= model.k / kLeafDepth.k;
     out.normals = mesh.normals;
     out.ambient.resize(mesh.positions.size());
     std::vector<float> openness(mesh.positions.size());
     parallelFor(mesh.positions.size(), 4096, [&](std::size_t v) {
       const DepthSums& s = sums[first + v];
       openness[v] = opennessOf(s, model);
-      const float light =
-          !leaves ? kWoodLight.a + kWoodLight.b * std::exp(-kWoodLight.k * s.hemisphere)
-          : turned ? outwardLightOf(s, model)
-                   : openness[v];
+      const float light = !leaves
+                              ? kWoodLight.a + kWoodLight.b * std::exp(-kWoodLight.k * s.hemisphere)
+                          : turned ? outwardLightOf(s, crown)
+                                   : openness[v];
       out.ambient[v] = std::clamp(light, 1.0f / 255.0f, 1.0f);
       if (turned) out.normals[v] = crownNormal(s, mesh.normals[v], options.blend);
     });

@@ -161,7 +161,8 @@ struct DepthBake {
 /// The ambient coefficient is the share of an even sky's light that reaches the vertex: for leaves
 /// that take crown normals outwardLightOf(); for leaves that keep their own, whose back is lit as
 /// well, opennessOf(); for wood the light on the hemisphere of its normal, exp of the hemisphere's
-/// depth. Throws Error: no vertices, positions that are not finite, options out of range.
+/// depth. Throws Error: no triangles, no foliage or none with an area, positions that are not
+/// finite, options out of range.
 DepthBake bakeOpticalDepth(const Plant& plant, const DepthOptions& options = {});
 
 }  // namespace verdure

@@ -62,6 +62,19 @@ void checkOptions(const DepthOptions& o) {
                 "use --normals optical-depth or keep, or --field metaball");
 }
 
+void checkFoliage(const Plant& plant) {
+  const bool any = std::any_of(plant.meshes.begin(), plant.meshes.end(), [](const Mesh& m) {
+    return m.kind == PartKind::kFoliage && !m.indices.empty();
+  });
+  if (!any)
+    throw Error(plant.name, "the plant has no foliage",
+                "name its material or mesh with --foliage, or choose another plant");
+  if (!plant.leaves.empty() && std::none_of(plant.leaves.begin(), plant.leaves.end(),
+                                            [](const Leaf& l) { return l.area > 0.0f; }))
+    throw Error(plant.name, fmt::format("all {} leaves have zero area", plant.leaves.size()),
+                "check the scale of the foliage");
+}
+
 glm::vec3 crownNormal(const DepthSums& sums, const glm::vec3& own, float blend) {
   const float length = glm::length(sums.toward);
   if (!(length > 1e-6f * sums.depth)) return own;
@@ -142,6 +155,7 @@ DepthBake bakeOpticalDepth(const Plant& plant, const DepthOptions& options) {
   show("surfaces", 0.0);
   const std::vector<Surfel> surfels = plantSurfels(plant);
   for (const Surfel& s : surfels) report.area_m2 += double{s.area};
+  checkFoliage(plant);
   const DepthFieldOptions field_options = plantDepthOptions(plant, surfels);
   report.near_gain = field_options.near_gain;
   report.near_radius = field_options.near_radius;

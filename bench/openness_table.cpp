@@ -1,4 +1,5 @@
-// How well fields predict what rays find, plant by plant, as a table in Markdown (docs/openness.md):
+// How well fields predict what rays find, plant by plant, as a table in Markdown
+// (docs/openness.md):
 //   openness_table [--samples N] [--dump FILE] [PLANT | SPECIES]...
 // Without plants: all species, grown with seed 4. Openness is the share of the whole sphere that is
 // free (512 rays); vertices that see nothing at all are left out, and their share is told.
@@ -31,8 +32,8 @@ double median(std::vector<double> v) {
 double meanAngleDeg(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b) {
   double sum = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i)
-    sum += std::acos(double{std::clamp(glm::dot(glm::normalize(a[i]), glm::normalize(b[i])), -1.0f,
-                                       1.0f)});
+    sum += std::acos(
+        double{std::clamp(glm::dot(glm::normalize(a[i]), glm::normalize(b[i])), -1.0f, 1.0f)});
   return a.empty() ? 0.0 : sum / static_cast<double>(a.size()) * 180.0 / M_PI;
 }
 
@@ -131,7 +132,7 @@ void addPlant(const Plant& plant, std::size_t samples, std::FILE* dump, Columns&
     leaf_truth.push_back(truth.back());
     leaf_predicted.push_back(predicted.back());
     crown_truth.push_back(crown_light[i].x);
-    crown_outward.push_back(outwardLightOf(s, DepthModels{}.leaf));
+    crown_outward.push_back(outwardLightOf(s, kCrownLight));
     own_truth.push_back(own_light[i].x);
     own_hemisphere.push_back(-s.hemisphere);
     if (glm::length(openness[i].direction) > 0.02f && glm::length(s.toward) > 0.0f) {
@@ -143,7 +144,8 @@ void addPlant(const Plant& plant, std::size_t samples, std::FILE* dump, Columns&
                   leaves = agreementOf(leaf_predicted, leaf_truth),
                   metaball = agreementOf(scaledTo(ball, truth), truth),
                   crown = agreementOf(crown_outward, crown_truth),
-                  crown_by_openness = agreementOf(scaledTo(leaf_predicted, crown_truth), crown_truth),
+                  crown_by_openness =
+                      agreementOf(scaledTo(leaf_predicted, crown_truth), crown_truth),
                   own = agreementOf(own_hemisphere, own_truth),
                   own_by_openness = agreementOf(leaf_predicted, own_truth),
                   wood = agreementOf(wood_light, wood_truth);
@@ -163,12 +165,13 @@ void addPlant(const Plant& plant, std::size_t samples, std::FILE* dump, Columns&
   columns.own_by_openness.push_back(own_by_openness.rank);
   columns.wood.push_back(wood.rms);
   columns.times.push_back(ray_seconds / seconds);
-  fmt::print("| {} | {} | {:.0f} % | {:.3f}, {:.2f} | {:.3f}, {:.2f} | {:.3f}, {:.2f} | {:.3f}, {:.2f} "
-             "| {:.0f} | {:.3f} | {:.2f} | {:.3f} | {:.2f} s | {:.0f} |\n",
-             plant.name, all.size(),
-             100.0 * static_cast<double>(hidden) / static_cast<double>(chosen.size()), plain.rms,
-             plain.rank, leaves.rms, leaves.rank, fit.rms, fit.rank, metaball.rms, metaball.rank,
-             angle, crown.rms, own.rank, wood.rms, seconds, ray_seconds / seconds);
+  fmt::print(
+      "| {} | {} | {:.0f} % | {:.3f}, {:.2f} | {:.3f}, {:.2f} | {:.3f}, {:.2f} | {:.3f}, {:.2f} "
+      "| {:.0f} | {:.3f} | {:.2f} | {:.3f} | {:.2f} s | {:.0f} |\n",
+      plant.name, all.size(),
+      100.0 * static_cast<double>(hidden) / static_cast<double>(chosen.size()), plain.rms,
+      plain.rank, leaves.rms, leaves.rank, fit.rms, fit.rank, metaball.rms, metaball.rank, angle,
+      crown.rms, own.rank, wood.rms, seconds, ray_seconds / seconds);
   std::fflush(stdout);
 }
 
@@ -187,9 +190,10 @@ int run(int argc, char** argv) {
   }
   if (names.empty())
     for (const SpeciesInfo& s : speciesList()) names.push_back(s.name);
-  fmt::print("| plant | vertices | hidden | all: RMS, rank | leaves | fitted | metaball | open side, "
-             "degrees | crown light RMS | leaf light rank | wood light RMS | time | rays / field |\n"
-             "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  fmt::print(
+      "| plant | vertices | hidden | all: RMS, rank | leaves | fitted | metaball | open side, "
+      "degrees | crown light RMS | leaf light rank | wood light RMS | time | rays / field |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   Columns c;
   for (const std::string& name : names) {
     Plant plant;
@@ -204,14 +208,16 @@ int run(int argc, char** argv) {
     }
     addPlant(plant, samples, dump, c);
   }
-  fmt::print("| median | | | {:.3f}, {:.2f} | {:.3f}, {:.2f} | {:.3f}, {:.2f} | {:.3f}, {:.2f} | "
-             "{:.0f} | {:.3f} | {:.2f} | {:.3f} | | {:.0f} |\n",
-             median(c.rms), median(c.rank), median(c.leaf_rms), median(c.leaf_rank),
-             median(c.fit_rms), median(c.fit_rank), median(c.ball_rms), median(c.ball_rank),
-             median(c.angle), median(c.crown), median(c.own), median(c.wood), median(c.times));
-  fmt::print("\nCrown light by openness alone (scaled to fit): RMS {:.3f}; leaf light by openness "
-             "alone: rank {:.2f}\n",
-             median(c.crown_by_openness), median(c.own_by_openness));
+  fmt::print(
+      "| median | | | {:.3f}, {:.2f} | {:.3f}, {:.2f} | {:.3f}, {:.2f} | {:.3f}, {:.2f} | "
+      "{:.0f} | {:.3f} | {:.2f} | {:.3f} | | {:.0f} |\n",
+      median(c.rms), median(c.rank), median(c.leaf_rms), median(c.leaf_rank), median(c.fit_rms),
+      median(c.fit_rank), median(c.ball_rms), median(c.ball_rank), median(c.angle), median(c.crown),
+      median(c.own), median(c.wood), median(c.times));
+  fmt::print(
+      "\nCrown light by openness alone (scaled to fit): RMS {:.3f}; leaf light by openness "
+      "alone: rank {:.2f}\n",
+      median(c.crown_by_openness), median(c.own_by_openness));
   if (dump != nullptr) std::fclose(dump);
   return 0;
 }

@@ -33,7 +33,7 @@ TEST_F(CommandLine, HelpNamesEveryOptionAndDefault) {
                                Words{"figures", "--help"}, Words{"figures", "luft", "--help"}})
     EXPECT_NE(runWell(command).find("Usage: "), std::string::npos) << command[0];
   const std::string bake = runWell({"bake", "-h"});
-  for (const char* text : {"--grid INT=128", "--k-min FLOAT=0.2", "--normals TEXT=surface-point",
+  for (const char* text : {"--grid INT=128", "--k-min FLOAT=0.2", "--field TEXT",
                            "--max-memory FLOAT=4096", "default: from the crown"})
     EXPECT_NE(bake.find(text), std::string::npos) << text << " is not in:\n" << bake;
   EXPECT_TRUE(std::regex_match(runWell({"--version"}), std::regex("verdure [0-9]+\\.[0-9.]+\n")));
@@ -222,7 +222,8 @@ TEST_F(CommandLine, RefusesFilesThatAreNoPlants) {
     file.json["accessors"][0]["count"] = count;
     refused(file.glb(), {"bad.glb: accessor 0"});
   }
-  refused(LeafFile({{0, 0, 0}}).glb(), {"single leaf"});
+  writeFile(bad, LeafFile({{0, 0, 0}}).glb());
+  expectRefused({"bake", bad, "-o", out, "--field", "metaball"}, {"single leaf"});
   refused(LeafFile(two, 0.0f).glb(), {"2 leaves have zero area"});
   writeFile(path("picture.png"), encodePng(Image(4, 4)));
   expectRefused({"bake", path("picture.png"), "-o", out}, {"picture.png: ", "use .glb, .gltf"});
@@ -249,7 +250,10 @@ TEST_F(CommandLine, RefusesParametersOfTheBake) {
   refused({"--max-memory", "nan"}, {"--max-memory"});
   refused({"--norm", "0.5"}, {"--norm: ", "at least 1"});
   refused({"--norm", "abc"}, {"--norm: 'abc' is no number"});
-  refused({"--normals", "abc"}, {"--normals: 'abc' is unknown; use surface-point"});
+  refused({"--normals", "abc"}, {"--normals: 'abc' is unknown; use optical-depth"});
+  refused({"--field", "abc"}, {"--field: 'abc' is unknown"});
+  refused({"--field", "optical-depth", "--rho", "1"}, {"--rho: belongs to the metaball field"});
+  refused({"--field", "metaball", "--normals", "optical-depth"}, {"--normals optical-depth: "});
   refused({"--fraction", "0"}, {"fraction"});
   refused({"--k-min", "2"}, {"k_min"});
   refused({"--exponent", "nan"}, {"exponent"});

@@ -43,9 +43,25 @@ struct DensityOptions {
   std::function<void(const char* step, double share)> progress;
 };
 
+/// How well a prediction agrees with what rays find.
+struct Agreement {
+  double rms = 0.0;
+  double rank = 0.0;  ///< Spearman's correlation
+};
+Agreement agreementOf(std::span<const float> predicted, std::span<const float> traced);
+
+/// What fitDensity() found.
+struct DensityFit {
+  std::size_t samples = 0;
+  float full = 1.0f;        ///< the openness that counts as 1
+  Agreement before, after;  ///< of the coefficient with openness / full, at most 1
+  double seconds = 0.0;
+};
+
 /// Every number that a bake found or measured.
 struct DensityReport {
   float rho = 0, tau = 0, d_min = 0, k_min = 0, exponent = 0;
+  std::optional<DensityFit> fit;
   std::size_t leaves = 0;             ///< foliage primitives
   std::size_t generators = 0;         ///< those that were used
   std::size_t skipped_leaves = 0;     ///< zero area
@@ -77,6 +93,13 @@ struct DensityBake {
 /// max_memory_bytes. The plant's leaves must have been found (findLeaves).
 DensityBake bakeDensity(const Plant& plant, const DensityOptions& options = {},
                         const Surface* surface = nullptr);
+
+/// Chooses rho, tau, d_min, k_min and the exponent so that the ambient coefficient comes as close
+/// as it can (RMS) to openness traced at some hundred vertices, leaves and wood alike, relative to
+/// that of the most open twentieth. Returns `options` with these set; those given there, or the
+/// plant's own where they are not, are DensityFit::before. Throws as bakeDensity.
+DensityOptions fitDensity(const Plant& plant, const DensityOptions& options,
+                          DensityFit* fit = nullptr);
 
 /// A plant at a place: rotation about +Y (radians), then uniform scale, then translation (m).
 struct Placement {

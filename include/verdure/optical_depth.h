@@ -31,10 +31,10 @@ struct Surfel {
 
 /// Sums of the field at a point. d_i is the unit direction to surfel i.
 struct DepthSums {
-  float depth = 0.0f;         ///< X
-  glm::vec3 toward{0.0f};     ///< sum w_i d_i: points to where most surface is, |toward| <= depth
-  float hemisphere = 0.0f;    ///< sum 4 max(n . d_i, 0) w_i: X of the normal's hemisphere, weighted
-                              ///< by the cosine as the light on a surface is
+  float depth = 0.0f;       ///< X
+  glm::vec3 toward{0.0f};   ///< sum w_i d_i: points to where most surface is, |toward| <= depth
+  float hemisphere = 0.0f;  ///< sum 4 max(n . d_i, 0) w_i: X of the normal's hemisphere, weighted
+                            ///< by the cosine as the light on a surface is
 };
 
 struct DepthFieldOptions {
@@ -64,9 +64,11 @@ class OpticalDepthField {
   /// `hemisphere` is 0). Returns how many terms were evaluated for a point, on average.
   double sumAt(std::span<const glm::vec3> points, std::span<const glm::vec3> normals,
                std::span<DepthSums> sums) const;
-  /// The terms of single surfels, to be taken off a sum: those that a point touches do not block it.
+  /// The terms of single surfels, to be taken off a sum: those that a point touches do not block
+  /// it.
   DepthSums termsOf(std::span<const Surfel> surfels, const glm::vec3& point,
                     const glm::vec3& normal) const;
+
  private:
   struct State;
   std::unique_ptr<State> state_;
@@ -88,10 +90,12 @@ struct DepthModel {
 
 /// Found once, over all plants of docs/openness.md.
 inline constexpr float kNearGain = 2.0f;
-inline constexpr DepthModel kLeafDepth{0.06f, 1.09f, 0.87f};
-inline constexpr DepthModel kWoodDepth{0.05f, 0.85f, 0.90f};
+inline constexpr DepthModel kLeafDepth{0.04f, 1.095f, 0.80f};
+inline constexpr DepthModel kWoodDepth{0.055f, 0.83f, 0.86f};
 /// Of wood's hemisphere: light = a + b exp(-k hemisphere).
-inline constexpr DepthModel kWoodLight{0.0f, 1.0f, 0.80f};
+inline constexpr DepthModel kWoodLight{0.06f, 0.89f, 0.66f};
+/// Of leaves with crown normals, for outwardLightOf(); its k goes with that of the leaves.
+inline constexpr DepthModel kCrownLight{0.0f, 0.954f, 0.66f};
 
 float opennessOf(const DepthSums& sums, const DepthModel& model);
 /// The same for the light of an even sky on a surface that faces away from `toward`, where the
@@ -116,13 +120,6 @@ DepthFieldOptions plantDepthOptions(const Plant& plant, std::span<const Surfel> 
 std::vector<DepthSums> vertexDepths(const Plant& plant, std::span<const Surfel> surfels,
                                     const OpticalDepthField& field, double* terms = nullptr);
 
-/// How well a prediction agrees with traced openness.
-struct Agreement {
-  double rms = 0.0;
-  double rank = 0.0;  ///< Spearman's correlation
-};
-Agreement agreementOf(std::span<const float> predicted, std::span<const float> traced);
-
 /// What a plant's fit found.
 struct DepthFit {
   DepthModels models;
@@ -133,8 +130,8 @@ struct DepthFit {
 struct DepthOptions {
   CrownNormals normals = CrownNormals::kOpticalDepth;  ///< or kKeep
   float blend = 1.0f;                                  ///< 0 = leaf normal, 1 = crown normal
-  bool fit = false;         ///< fit the models to openness traced at some hundred vertices
-  std::uint32_t seed = 1;   ///< of the choice of these
+  bool fit = false;        ///< fit the models to openness traced at some hundred vertices
+  std::uint32_t seed = 1;  ///< of the choice of these
   std::size_t max_memory_bytes = std::size_t{4} << 30;  ///< of the rays' scene
   std::function<void(const char* step, double share)> progress;
 };
@@ -144,9 +141,9 @@ struct DepthReport {
   DepthModels models;
   float near_gain = 0, near_radius = 0;
   std::optional<DepthFit> fit;
-  std::size_t surfels = 0;         ///< those with an area
-  double area_m2 = 0;              ///< theirs, as it counts
-  double terms_per_vertex = 0;     ///< evaluated, of `surfels`
+  std::size_t surfels = 0;             ///< those with an area
+  double area_m2 = 0;                  ///< theirs, as it counts
+  double terms_per_vertex = 0;         ///< evaluated, of `surfels`
   float depth_min = 0, depth_max = 0;  ///< X at vertices
   double mean_openness = 0;
   double mean_ambient = 0;
@@ -164,7 +161,8 @@ struct DepthBake {
 /// The ambient coefficient is the share of an even sky's light that reaches the vertex: for leaves
 /// that take crown normals outwardLightOf(); for leaves that keep their own, whose back is lit as
 /// well, opennessOf(); for wood the light on the hemisphere of its normal, exp of the hemisphere's
-/// depth. Throws Error: no vertices, positions that are not finite, options out of range.
+/// depth. Throws Error: no triangles, no foliage or none with an area, positions that are not
+/// finite, options out of range.
 DepthBake bakeOpticalDepth(const Plant& plant, const DepthOptions& options = {});
 
 }  // namespace verdure

@@ -8,6 +8,7 @@
 #include "app/scene_options.h"
 #include "verdure/density.h"
 #include "verdure/grow.h"
+#include "verdure/optical_depth.h"
 #include "verdure/plant_io.h"
 #include "verdure/render.h"
 #include "verdure/transfer.h"
@@ -33,18 +34,26 @@ struct InspectCommand {
 };
 void runInspect(const InspectCommand& command);
 
+enum class BakeField { kMetaball, kOpticalDepth };
+
 /// The parameters of the bake as the command line gives them; `options` reads them.
 struct BakeParameters {
   DensityOptions options;
+  std::string field;            ///< metaball or optical-depth; empty: as fieldOr() finds
+  std::string metaball_option;  ///< one that was given and that only the metaball field has
   std::string norm = "2";
-  std::string normals = "surface-point";
+  std::string normals;  ///< empty: the field's own
+  bool fit = false;
   double max_memory_mib = 4096;
 
+  /// The field that was named, else the one that the given options need, else `fallback`. Throws
+  /// Error: an unknown field, an option that the named one has not.
+  BakeField fieldOr(BakeField fallback) const;
   /// Throws Error for an unknown norm or kind of normals.
   DensityOptions checked() const;
+  DepthOptions checkedDepth() const;
 };
 
-/// What `bake` traces by rays, as the command line gives it.
 struct RayParameters {
   std::string ambient = "density";
   int rays = 256;
@@ -191,6 +200,7 @@ std::optional<RayReport> traceLight(const BakeCommand& command, const Plant& pla
                                     CrownLight& light);
 std::string jsonOf(const RayReport& report);
 std::string jsonOf(const DensityReport& report);
+std::string jsonOf(const DepthReport& report);
 std::string jsonOf(const PlantReport& report);
 
 }  // namespace verdure::app

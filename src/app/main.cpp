@@ -26,6 +26,10 @@ void addLoadOptions(CLI::App& command, LoadOptions& load) {
 
 void addBakeOptions(CLI::App& command, BakeParameters& bake, const char* group) {
   DensityOptions& o = bake.options;
+  command
+      .add_option("--field", bake.field,
+                  "optical-depth, or metaball (Luft et al. 2007; any of its parameters means it)")
+      ->group(group);
   command.add_option("--rho", o.rho, "Radius of influence of a leaf, m (default: from the crown)")
       ->group(group);
   command
@@ -54,10 +58,11 @@ void addBakeOptions(CLI::App& command, BakeParameters& bake, const char* group) 
       ->group(group)
       ->capture_default_str();
   command
-      .add_option("--normals", bake.normals,
-                  "Leaf normals: surface-point, surface-vertex, ellipsoid, keep, or in bake bent")
-      ->group(group)
-      ->capture_default_str();
+      .add_option(
+          "--normals", bake.normals,
+          "Leaf normals: optical-depth; metaball: surface-point, surface-vertex, ellipsoid; "
+          "keep; in bake bent (default: the field's first)")
+      ->group(group);
   command.add_option("--blend", o.blend, "0 = the leaf's normals, 1 = the crown's")
       ->group(group)
       ->capture_default_str();
@@ -164,6 +169,8 @@ int run(int argc, char** argv) {
   bake_app->add_option("-o,--output", bake.output, "File to write: .glb or .gltf")->required();
   addLoadOptions(*bake_app, bake.load);
   addBakeOptions(*bake_app, bake.bake, "Density field");
+  bake_app->add_flag("--fit", bake.bake.fit,
+                     "Choose the field's parameters by rays traced from some hundred vertices");
   bake_app->add_option("--surface", bake.surface,
                        "Use this surface instead of the field's: .obj .ply .glb");
   bake_app->add_option("--population", bake.population,
@@ -309,6 +316,13 @@ int run(int argc, char** argv) {
     throw Error("figures", "no paper is named", "use luft or sky; see verdure figures --help");
   for (const CLI::Option* option : render_app->get_options())
     if (option->get_group() == kBakeGroup && option->count() > 0) render.bake_again = true;
+  for (const char* name : {"--rho", "--tau", "--fraction", "--norm", "--grid", "--d-min", "--k-min",
+                           "--exponent", "--surface", "--population"}) {
+    const CLI::Option* const of_bake = bake_app->get_option(name);
+    if (of_bake->count() > 0) bake.bake.metaball_option = name;
+    const CLI::Option* const of_render = render_app->get_option_no_throw(name);
+    if (of_render != nullptr && of_render->count() > 0) render.bake.metaball_option = name;
+  }
   setThreadCount(threads);
   if (*grow_app) runGrow(grow);
   if (*inspect_app) runInspect(inspect);

@@ -61,7 +61,8 @@ Surface loadSurface(const std::string& path, const glm::dvec3& plant_origin) {
 }
 
 /// Progress of a bake on the terminal.
-void showProgress(DensityOptions& options, Progress& progress) {
+template <class Options>
+void showProgress(Options& options, Progress& progress) {
   options.progress = [&progress](const char* step, double share) { progress.show(step, share); };
 }
 
@@ -150,6 +151,10 @@ void bakePopulation(const BakeCommand& command) {
       command.bake.normals == "bent")
     throw Error("--population", "cannot be used with rays (--ambient, --transfer, --normals bent)",
                 "bake each plant alone");
+  command.bake.fieldOr(BakeField::kMetaball);  // the optical-depth field knows no neighbours
+  if (command.bake.fit)
+    throw Error("--fit", "cannot be used with --population",
+                "fit one plant and pass its parameters");
   DensityOptions options = command.bake.checked();
   const auto [plants, placements] = readPopulation(command);
   for (std::size_t i = 0; i < placements.size(); ++i)
@@ -248,6 +253,41 @@ void runInspect(const InspectCommand& command) {
   for (const std::string& problem : report.problems) fmt::print("  problem   {}\n", problem);
 }
 
+BakeField BakeParameters::fieldOr(BakeField fallback) const {
+  std::string given = metaball_option;
+  if (normals == "surface-vertex" || normals == "surface-point" || normals == "ellipsoid")
+    given = "--normals " + normals;
+  if (field == "metaball") {
+    if (normals == "optical-depth")
+      throw Error("--normals optical-depth", "does not go with --field metaball",
+                  "leave one of them out");
+    return BakeField::kMetaball;
+  }
+  if (!field.empty() && field != "optical-depth")
+    throw Error("--field", fmt::format("'{}' is unknown", field), "use metaball or optical-depth");
+  const bool depth = field == "optical-depth" || normals == "optical-depth";
+  if (depth && !given.empty())
+    throw Error(given, "belongs to the metaball field, not to optical-depth",
+                "leave it out, or use --field metaball");
+  return depth ? BakeField::kOpticalDepth : given.empty() ? fallback : BakeField::kMetaball;
+}
+
+DepthOptions BakeParameters::checkedDepth() const {
+  const DensityOptions common = [&] {
+    BakeParameters named = *this;  // the rest is checked alike
+    if (normals == "optical-depth") named.normals.clear();
+    return named.checked();
+  }();
+  DepthOptions o;
+  o.normals =
+      common.normals == CrownNormals::kKeep ? CrownNormals::kKeep : CrownNormals::kOpticalDepth;
+  o.blend = common.blend;
+  o.seed = common.seed;
+  o.max_memory_bytes = common.max_memory_bytes;
+  o.fit = fit;
+  return o;
+}
+
 DensityOptions BakeParameters::checked() const {
   DensityOptions o = options;
   if (norm == "inf") {
@@ -259,7 +299,9 @@ DensityOptions BakeParameters::checked() const {
              : p == 2.0f ? Norm{Norm::Kind::kL2, 2.0f}
                          : Norm{Norm::Kind::kLp, p};
   }
-  if (normals == "surface-vertex")
+  if (normals.empty())
+    o.normals = CrownNormals::kSurfacePoint;
+  else if (normals == "surface-vertex")
     o.normals = CrownNormals::kSurfaceVertex;
   else if (normals == "surface-point")
     o.normals = CrownNormals::kSurfacePoint;
@@ -269,11 +311,46 @@ DensityOptions BakeParameters::checked() const {
     o.normals = CrownNormals::kKeep;
   else
     throw Error("--normals", fmt::format("'{}' is unknown", normals),
-                "use surface-point, surface-vertex, ellipsoid or keep");
+                "use optical-depth, surface-point, surface-vertex, ellipsoid or keep");
   if (!(max_memory_mib > 0.0)) throw Error("--max-memory", "must be above 0", "4096 is usual");
   o.max_memory_bytes = static_cast<std::size_t>(std::min(max_memory_mib, 1e12) * 1048576.0);
   return o;
 }
+
+namespace {
+
+std::string lineOf(const DensityReport& r) {
+  return fmt::format(
+      "{} leaves, rho {:.3g} m, tau {:.3g}, d_min {:.3g}; surface of {} vertices{}; "
+      "mean ambient {:.2f}{}; baked in {:.2f} s",
+      r.leaves, r.rho, r.tau, r.d_min, r.surface_vertices,
+      r.surface_vertices == 0 || r.watertight ? "" : ", not watertight", r.mean_ambient,
+      r.fit ? fmt::format("; fitted to {} traced vertices, RMS {:.3f} (before {:.3f})",
+                          r.fit->samples, r.fit->after.rms, r.fit->before.rms)
+            : "",
+      r.seconds_total);
+}
+
+std::string lineOf(const DepthReport& r) {
+  return fmt::format(
+      "optical depth of {} surfels, up to {:.2g}; mean openness {:.2f}, mean ambient "
+      "{:.2f}{}; baked in {:.2f} s",
+      r.surfels, r.depth_max, r.mean_openness, r.mean_ambient,
+      r.fit ? fmt::format("; fitted to {} traced vertices, RMS {:.3f} (before {:.3f})",
+                          r.fit->samples, r.fit->after.rms, r.fit->before.rms)
+            : "",
+      r.seconds_total);
+}
+
+Json jsonOf(const DepthModel& m) {
+  return {{"a", m.a}, {"b", m.b}, {"k", m.k}};
+}
+
+Json jsonOf(const Agreement& a) {
+  return {{"rms", a.rms}, {"rank", a.rank}};
+}
+
+}  // namespace
 
 void runBake(const BakeCommand& command) {
   checkOutput(command.output, {".glb", ".gltf"});
@@ -285,21 +362,40 @@ void runBake(const BakeCommand& command) {
   if (fs::path(command.report).lexically_normal() == fs::path(command.output).lexically_normal())
     throw Error("--report", "names the output file", "choose another file");
   if (!command.population.empty()) return bakePopulation(command);
+  const BakeField field = command.bake.fieldOr(BakeField::kOpticalDepth);
   BakeParameters parameters = command.bake;
-  if (parameters.normals == "bent") parameters.normals = "keep";  // traceLight() finds them
+  if (parameters.normals == "bent")  // traceLight() finds them
+    parameters.normals = field == BakeField::kMetaball ? "keep" : "";
   DensityOptions options = parameters.checked();
+  DepthOptions depth_options = parameters.checkedDepth();
   const Plant plant = loadPlant(command.input, command.load);
   std::optional<Surface> surface;
   if (!command.surface.empty()) surface = loadSurface(command.surface, plant.origin);
-  DensityBake bake = [&] {
+  CrownLight light;
+  Json report;
+  std::string line;
+  {
     Progress progress("bake");
-    showProgress(options, progress);
-    return bakeDensity(plant, options, surface ? &*surface : nullptr);
-  }();
-  const std::optional<RayReport> rays = traceLight(command, plant, bake.light);
-  savePlant(plant, &bake.light, command.output, {command.color1});
+    if (field == BakeField::kMetaball) {
+      showProgress(options, progress);
+      std::optional<DensityFit> fit;
+      if (parameters.fit) options = fitDensity(plant, options, &fit.emplace());
+      DensityBake bake = bakeDensity(plant, options, surface ? &*surface : nullptr);
+      bake.report.fit = fit;
+      light = std::move(bake.light);
+      report = Json::parse(jsonOf(bake.report));
+      line = lineOf(bake.report);
+    } else {
+      showProgress(depth_options, progress);
+      DepthBake bake = bakeOpticalDepth(plant, depth_options);
+      light = std::move(bake.light);
+      report = Json::parse(jsonOf(bake.report));
+      line = lineOf(bake.report);
+    }
+  }
+  const std::optional<RayReport> rays = traceLight(command, plant, light);
+  savePlant(plant, &light, command.output, {command.color1});
   if (rays && rays->transfer) saveTransfer(*rays->transfer, plant, command.output);
-  Json report = Json::parse(jsonOf(bake.report));
   if (rays) report["rays"] = Json::parse(jsonOf(*rays));
   const std::string json = report.dump(2);
   if (!command.report.empty()) writeFile(command.report, json + "\n");
@@ -308,13 +404,7 @@ void runBake(const BakeCommand& command) {
     return;
   }
   for (const std::string& note : plant.notes) fmt::print("note: {}\n", note);
-  const DensityReport& r = bake.report;
-  fmt::print(
-      "{}: {} leaves, rho {:.3g} m, tau {:.3g}, d_min {:.3g}; surface of {} vertices{}; "
-      "mean ambient {:.2f}; baked in {:.2f} s\n",
-      command.output, r.leaves, r.rho, r.tau, r.d_min, r.surface_vertices,
-      r.surface_vertices == 0 || r.watertight ? "" : ", not watertight", r.mean_ambient,
-      r.seconds_total);
+  fmt::print("{}: {}\n", command.output, line);
   if (!rays) return;
   fmt::print("traced {} rays a vertex, {} bounces", rays->rays, rays->bounces);
   if (rays->seconds_ambient > 0.0)
@@ -325,42 +415,78 @@ void runBake(const BakeCommand& command) {
   fmt::print("\n");
 }
 
+std::string jsonOf(const DepthReport& r) {
+  Json json = {{"kind", "optical-depth"},
+               {"model",
+                {{"leaf", jsonOf(r.models.leaf)},
+                 {"wood", jsonOf(r.models.wood)},
+                 {"near_gain", r.near_gain},
+                 {"near_radius_m", r.near_radius}}},
+               {"surfels", r.surfels},
+               {"area_m2", r.area_m2},
+               {"terms_per_vertex", r.terms_per_vertex},
+               {"depth", {{"min", r.depth_min}, {"max", r.depth_max}}},
+               {"vertices",
+                {{"all", r.vertices},
+                 {"foliage", r.foliage_vertices},
+                 {"mean_openness", r.mean_openness},
+                 {"mean_ambient", r.mean_ambient}}},
+               {"seconds",
+                {{"surfels", r.seconds_surfels},
+                 {"field", r.seconds_field},
+                 {"fit", r.seconds_fit},
+                 {"light", r.seconds_light},
+                 {"total", r.seconds_total}}}};
+  if (r.fit)
+    json["fit"] = {{"samples", r.fit->samples},
+                   {"before", jsonOf(r.fit->before)},
+                   {"after", jsonOf(r.fit->after)}};
+  return json.dump(2);
+}
+
 std::string jsonOf(const DensityReport& r) {
-  const Json json = {{"rho_m", r.rho},
-                     {"tau", r.tau},
-                     {"d_min", r.d_min},
-                     {"k_min", r.k_min},
-                     {"exponent", r.exponent},
-                     {"leaves", r.leaves},
-                     {"leaves_without_area", r.skipped_leaves},
-                     {"generators", r.generators},
-                     {"field",
-                      {{"largest_sum_at_leaves", r.field_max_at_generators},
-                       {"min_at_vertices", r.field_min_at_vertices},
-                       {"max_at_vertices", r.field_max_at_vertices}}},
-                     {"grid",
-                      {{"points", {r.grid_points.x, r.grid_points.y, r.grid_points.z}},
-                       {"points_evaluated", r.grid_points_evaluated},
-                       {"voxel_m", r.voxel_m},
-                       {"bytes", r.grid_bytes}}},
-                     {"surface",
-                      {{"vertices", r.surface_vertices},
-                       {"triangles", r.surface_triangles},
-                       {"components", r.surface_components},
-                       {"watertight", r.watertight},
-                       {"degenerate_gradients", r.degenerate_gradients}}},
-                     {"vertices",
-                      {{"all", r.vertices},
-                       {"foliage", r.foliage_vertices},
-                       {"open", r.vertices_open},
-                       {"core", r.vertices_core},
-                       {"mean_ambient", r.mean_ambient}}},
-                     {"seconds",
-                      {{"generators", r.seconds_generators},
-                       {"surface", r.seconds_surface},
-                       {"ambient", r.seconds_ambient},
-                       {"normals", r.seconds_normals},
-                       {"total", r.seconds_total}}}};
+  Json json = {{"kind", "metaball"},
+               {"rho_m", r.rho},
+               {"tau", r.tau},
+               {"d_min", r.d_min},
+               {"k_min", r.k_min},
+               {"exponent", r.exponent},
+               {"leaves", r.leaves},
+               {"leaves_without_area", r.skipped_leaves},
+               {"generators", r.generators},
+               {"field",
+                {{"largest_sum_at_leaves", r.field_max_at_generators},
+                 {"min_at_vertices", r.field_min_at_vertices},
+                 {"max_at_vertices", r.field_max_at_vertices}}},
+               {"grid",
+                {{"points", {r.grid_points.x, r.grid_points.y, r.grid_points.z}},
+                 {"points_evaluated", r.grid_points_evaluated},
+                 {"voxel_m", r.voxel_m},
+                 {"bytes", r.grid_bytes}}},
+               {"surface",
+                {{"vertices", r.surface_vertices},
+                 {"triangles", r.surface_triangles},
+                 {"components", r.surface_components},
+                 {"watertight", r.watertight},
+                 {"degenerate_gradients", r.degenerate_gradients}}},
+               {"vertices",
+                {{"all", r.vertices},
+                 {"foliage", r.foliage_vertices},
+                 {"open", r.vertices_open},
+                 {"core", r.vertices_core},
+                 {"mean_ambient", r.mean_ambient}}},
+               {"seconds",
+                {{"generators", r.seconds_generators},
+                 {"surface", r.seconds_surface},
+                 {"ambient", r.seconds_ambient},
+                 {"normals", r.seconds_normals},
+                 {"total", r.seconds_total}}}};
+  if (r.fit)
+    json["fit"] = {{"samples", r.fit->samples},
+                   {"full_openness", r.fit->full},
+                   {"before", jsonOf(r.fit->before)},
+                   {"after", jsonOf(r.fit->after)},
+                   {"seconds", r.fit->seconds}};
   return json.dump(2);
 }
 

@@ -122,7 +122,11 @@ void runRender(const RenderCommand& command) {
   if (command.shadow_map < 16)
     throw Error("--shadow-map", "must be at least 16 pixels", "2048 is usual");
   view.shadow_map_size = command.shadow_map;
+  // The preset `expressive` means the field of its paper.
+  const BakeField field = command.bake.fieldOr(
+      command.light == "expressive" ? BakeField::kMetaball : BakeField::kOpticalDepth);
   const DensityOptions bake_options = command.bake.checked();
+  const DepthOptions depth_options = command.bake.checkedDepth();
   checkOutput(command.output, {".png", ".exr"});
   view.hdr = std::filesystem::path(command.output).extension() == ".exr";
 
@@ -148,9 +152,15 @@ void runRender(const RenderCommand& command) {
   double bake_seconds = 0.0;
   if (!light && baked_terms) {
     progress.show("baking");
-    DensityBake bake = bakeDensity(plant, bake_options);
-    light = std::move(bake.light);
-    bake_seconds = bake.report.seconds_total;
+    if (field == BakeField::kMetaball) {
+      DensityBake bake = bakeDensity(plant, bake_options);
+      light = std::move(bake.light);
+      bake_seconds = bake.report.seconds_total;
+    } else {
+      DepthBake bake = bakeOpticalDepth(plant, depth_options);
+      light = std::move(bake.light);
+      bake_seconds = bake.report.seconds_total;
+    }
   }
   if (view.terms.normal == NormalSource::kLeaf) restoreLeafNormals(plant);
   Scene scene = command.sceneOf(plant, light ? &*light : nullptr);

@@ -25,8 +25,7 @@ std::vector<double> ranksOf(std::span<const float> values) {
   for (std::size_t i = 0; i < order.size();) {
     std::size_t j = i;
     while (j < order.size() && values[order[j]] == values[order[i]]) ++j;
-    for (std::size_t k = i; k < j; ++k)
-      ranks[order[k]] = 0.5 * static_cast<double>(i + j - 1);
+    for (std::size_t k = i; k < j; ++k) ranks[order[k]] = 0.5 * static_cast<double>(i + j - 1);
     i = j;
   }
   return ranks;

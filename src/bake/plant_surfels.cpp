@@ -58,8 +58,7 @@ std::vector<Surfel> plantSurfels(const Plant& plant) {
   for (const Mesh& mesh : plant.meshes) {
     for (std::size_t i = 0; i < mesh.positions.size(); ++i)
       if (!std::isfinite(mesh.positions[i].x + mesh.positions[i].y + mesh.positions[i].z))
-        throw Error(plant.name,
-                    fmt::format("position {} of part '{}' is not finite", i, mesh.name),
+        throw Error(plant.name, fmt::format("position {} of part '{}' is not finite", i, mesh.name),
                     "export the plant again");
     for (const std::uint32_t i : mesh.indices)
       if (i >= mesh.positions.size())
@@ -70,8 +69,7 @@ std::vector<Surfel> plantSurfels(const Plant& plant) {
     const Material* const material =
         mesh.material < plant.materials.size() ? &plant.materials[mesh.material] : nullptr;
     const bool cut = material != nullptr && material->alpha_mode != AlphaMode::kOpaque &&
-                     material->base_color_texture >= 0 &&
-                     mesh.uvs.size() == mesh.positions.size();
+                     material->base_color_texture >= 0 && mesh.uvs.size() == mesh.positions.size();
     const TexelGrid texels =
         cut ? TexelGrid(textureOf(plant, material->base_color_texture)) : TexelGrid();
     const float cutoff = cut ? textureCutoff(*material) : 0.0f;
@@ -85,9 +83,9 @@ std::vector<Surfel> plantSurfels(const Plant& plant) {
         Surfel& out = surfels[base + t];
         out.position = (a + b + c) / 3.0f;
         out.area = factor * 0.5f * glm::length(glm::cross(b - a, c - a));
-        out.extent = std::max(glm::length(a - out.position),
-                              std::max(glm::length(b - out.position),
-                                       glm::length(c - out.position)));
+        out.extent =
+            std::max(glm::length(a - out.position),
+                     std::max(glm::length(b - out.position), glm::length(c - out.position)));
         if (!cut) continue;
         const Uvs uvs{mesh.uvs[corner[0]], mesh.uvs[corner[1]], mesh.uvs[corner[2]]};
         const auto [at, fresh] = known.try_emplace(uvs, 0.0f);

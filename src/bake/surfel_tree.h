@@ -17,8 +17,8 @@ namespace verdure {
 void sortByMedians(std::span<std::uint32_t> order, std::span<const glm::vec3> positions,
                    std::size_t piece);
 
-/// A balanced tree over surfels, halved at the median of the longest side. Coordinates and areas are
-/// relative to its own origin and scale, so that nothing overflows whatever the unit.
+/// A balanced tree over surfels, halved at the median of the longest side. Coordinates and areas
+/// are relative to its own origin and scale, so that nothing overflows whatever the unit.
 class SurfelTree {
  public:
   SurfelTree() = default;

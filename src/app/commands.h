@@ -173,6 +173,17 @@ struct FiguresCommand {
 };
 void runLuftFigures(const FiguresCommand& command);
 
+struct FidelityCommand {
+  std::string output = "fidelity";
+  std::vector<std::string> species;  ///< empty: six
+  std::string size = "320x320";
+  int samples = 96;         ///< of the reference, a pixel
+  int transfer_rays = 128;  ///< for each vertex and side
+  DeviceOptions device;
+  bool json = false;
+};
+void runFidelityReport(const FidelityCommand& command);
+
 // Shared by the commands.
 
 /// Throws Error unless a file can be written at `path` and its name ends in one of `extensions`.

@@ -297,6 +297,23 @@ int run(int argc, char** argv) {
   habel_app->add_option("-o,--output", sky_figures.folder, "Folder to write")
       ->capture_default_str();
 
+  FidelityCommand fidelity;
+  CLI::App* report_app = app.add_subcommand("report", "Measure what verdure claims");
+  CLI::App* fidelity_app = report_app->add_subcommand(
+      "fidelity", "Light presets against the path tracer, crown fields against rays");
+  fidelity_app->add_option("-o,--output", fidelity.output, "Folder to write")
+      ->capture_default_str();
+  fidelity_app
+      ->add_option("--species", fidelity.species, "Species, separated by commas (default: six)")
+      ->delimiter(',');
+  fidelity_app->add_option("--size", fidelity.size, "WxH of each picture")->capture_default_str();
+  fidelity_app->add_option("--samples", fidelity.samples, "Paths a pixel of the reference")
+      ->capture_default_str();
+  fidelity_app->add_option("--rays", fidelity.transfer_rays, "Rays a vertex of transfer vectors")
+      ->capture_default_str();
+  fidelity_app->add_flag("--json", fidelity.json, "Print the numbers as JSON");
+  addDeviceOptions(*fidelity_app, fidelity.device);
+
   for (int i = 1; i < argc; ++i)
     if (*argv[i] == '\0')
       throw Error("argument " + std::to_string(i), "is empty", "give it a value or leave it out");
@@ -310,10 +327,13 @@ int run(int argc, char** argv) {
     return fail(std::string(e.what()) + "; see " + help);
   }
   if (app.get_subcommands().empty())
-    throw Error("command line", "no command is named",
-                "use grow, inspect, bake, render, reference, compare, sky or figures; see " + help);
+    throw Error(
+        "command line", "no command is named",
+        "use grow, inspect, bake, render, reference, compare, sky, figures or report; see " + help);
   if (*figures_app && figures_app->get_subcommands().empty())
     throw Error("figures", "no paper is named", "use luft or sky; see verdure figures --help");
+  if (*report_app && !*fidelity_app)
+    throw Error("report", "nothing is named", "use fidelity; see verdure report --help");
   for (const CLI::Option* option : render_app->get_options())
     if (option->get_group() == kBakeGroup && option->count() > 0) render.bake_again = true;
   for (const char* name : {"--rho", "--tau", "--fraction", "--norm", "--grid", "--d-min", "--k-min",
@@ -333,6 +353,7 @@ int run(int argc, char** argv) {
   if (*sky_app) runSky(sky);
   if (*luft_app) runLuftFigures(figures);
   if (*habel_app) writeSkyReport(sky_figures);
+  if (*fidelity_app) runFidelityReport(fidelity);
   return 0;
 }
 

@@ -4,6 +4,9 @@
 # sources need.
 add_library(verdure_warnings INTERFACE)
 target_compile_options(verdure_warnings INTERFACE -Wall -Wextra -Wconversion -Wshadow)
+if(CMAKE_UNITY_BUILD)  # there, every file but the first is an included one
+  target_compile_options(verdure_warnings INTERFACE -Wno-subobject-linkage)
+endif()
 if(VERDURE_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined
                       -fno-omit-frame-pointer)

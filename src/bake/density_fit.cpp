@@ -17,8 +17,8 @@
 namespace verdure {
 namespace {
 
-constexpr std::size_t kSamples = 256;  // of leaves and of wood each
-constexpr int kRays = 128;
+constexpr std::size_t kFieldSamples = 256;  // of leaves and of wood each
+constexpr int kFieldRays = 128;
 // The openness of this quantile counts as 1: k of (4) is 1 outside the crown, where a leaf still
 // has its neighbours.
 constexpr double kFullQuantile = 0.95;
@@ -101,7 +101,7 @@ DensityOptions fitDensity(const Plant& plant, const DensityOptions& options, Den
   if (centers.size() < 2)
     throw Error(plant.name, "the plant has fewer than two leaves", "check --foliage");
   const TracedSamples samples =
-      traceSamples(plant, kSamples, kRays, options.seed, options.max_memory_bytes);
+      traceSamples(plant, kFieldSamples, kFieldRays, options.seed, options.max_memory_bytes);
   if (samples.vertices.empty())
     throw Error(plant.name, "no vertex sees anything of the sky", "leave --fit out");
   std::vector<glm::vec3> points;

@@ -11,8 +11,8 @@
 namespace verdure {
 namespace {
 
-constexpr std::size_t kSamples = 384;  // of each kind
-constexpr int kRays = 256;
+constexpr std::size_t kModelSamples = 384;  // of each kind
+constexpr int kModelRays = 256;
 constexpr std::size_t kFewest = 24;  // fewer say too little
 
 /// Ranks from 0, ties at their mean.
@@ -137,7 +137,8 @@ TracedSamples traceSamples(const Plant& plant, std::size_t count, int rays, std:
 
 DepthFit fitDepthModels(const Plant& plant, std::span<const DepthSums> sums, std::uint32_t seed,
                         std::size_t max_memory_bytes) {
-  const TracedSamples samples = traceSamples(plant, kSamples, kRays, seed, max_memory_bytes);
+  const TracedSamples samples =
+      traceSamples(plant, kModelSamples, kModelRays, seed, max_memory_bytes);
   std::vector<std::size_t> first;
   std::size_t vertex = 0;
   for (const Mesh& mesh : plant.meshes) {

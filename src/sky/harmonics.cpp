@@ -13,8 +13,6 @@
 namespace verdure {
 namespace {
 
-constexpr double kPi = glm::pi<double>();
-
 /// Integral of the Legendre polynomial P_l over [from, 1].
 double capIntegral(int l, double from) {
   if (l == 0) return 1.0 - from;
@@ -30,7 +28,8 @@ double capIntegral(int l, double from) {
 
 /// Integral of Y_l0 over a cap around the zenith.
 double zonalCap(int l, double from) {
-  return 2.0 * kPi * std::sqrt((2 * l + 1) / (4.0 * kPi)) * capIntegral(l, from);
+  return 2.0 * glm::pi<double>() * std::sqrt((2 * l + 1) / (4.0 * glm::pi<double>())) *
+         capIntegral(l, from);
 }
 
 Harmonics withBands(int bands) {
@@ -92,8 +91,8 @@ Harmonics diskHarmonics(const glm::vec3& direction, float angular_radius,
   const glm::dvec3 d(shared::shFromWorld(direction));
   harmonicsOf(d.x, d.y, d.z, bands, values.data());
   for (int l = 0; l < bands; ++l) {
-    const double factor =
-        std::sqrt(4.0 * kPi / (2 * l + 1)) * zonalCap(l, std::cos(double{angular_radius}));
+    const double factor = std::sqrt(4.0 * glm::pi<double>() / (2 * l + 1)) *
+                          zonalCap(l, std::cos(double{angular_radius}));
     for (int i = l * l; i < (l + 1) * (l + 1); ++i)
       h.weights[static_cast<std::size_t>(i)] =
           luminance * static_cast<float>(factor * values[static_cast<std::size_t>(i)]);
@@ -104,7 +103,7 @@ Harmonics diskHarmonics(const glm::vec3& direction, float angular_radius,
 Harmonics groundHarmonics(const glm::vec3& luminance, int bands) {
   Harmonics h = withBands(bands);
   for (int l = 0; l < bands; ++l) {
-    const double weight = (l == 0 ? std::sqrt(4.0 * kPi) : 0.0) - zonalCap(l, 0.0);
+    const double weight = (l == 0 ? std::sqrt(4.0 * glm::pi<double>()) : 0.0) - zonalCap(l, 0.0);
     h.weights[static_cast<std::size_t>(l * l + l)] = luminance * static_cast<float>(weight);
   }
   return h;
@@ -130,7 +129,7 @@ Harmonics turned(const Harmonics& function, float azimuth) {
 
 double ringingFactor(int l, int bands) {
   if (l == 0) return 1.0;
-  const double x = kPi * l / bands;
+  const double x = glm::pi<double>() * l / bands;
   return std::sin(x) / x;
 }
 
@@ -143,10 +142,10 @@ Harmonics withoutRinging(const Harmonics& function) {
 
 Harmonics irradianceHarmonics(const Harmonics& luminance) {
   return scaled(luminance, [](int l) {
-    if (l == 1) return 2.0 * kPi / 3.0;
+    if (l == 1) return 2.0 * glm::pi<double>() / 3.0;
     if (l % 2 == 1) return 0.0;
     // pi for l = 0; pi / 4; -pi / 24; ...
-    double factor = 2.0 * kPi * (l % 4 == 0 ? -1.0 : 1.0) / ((l + 2.0) * (l - 1.0));
+    double factor = 2.0 * glm::pi<double>() * (l % 4 == 0 ? -1.0 : 1.0) / ((l + 2.0) * (l - 1.0));
     for (int k = 1; k <= l / 2; ++k) factor *= (l / 2 + k) / (4.0 * k);  // l! / (2^l (l/2)!^2)
     return factor;
   });
@@ -154,7 +153,7 @@ Harmonics irradianceHarmonics(const Harmonics& luminance) {
 
 glm::vec3 levelIlluminance(const Harmonics& luminance) {
   if (luminance.bands < 2) return glm::vec3(0.0f);
-  return luminance.weights[2] * static_cast<float>(std::sqrt(4.0 * kPi / 3.0));
+  return luminance.weights[2] * static_cast<float>(std::sqrt(4.0 * glm::pi<double>() / 3.0));
 }
 
 }  // namespace verdure

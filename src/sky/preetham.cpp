@@ -15,11 +15,9 @@ namespace verdure {
 
 namespace {
 
-constexpr double kPi = glm::pi<double>();
-
 /// Zenith luminance, kcd/m^2, and chromaticity x, y (appendix 1).
 glm::dvec3 zenith(double t, double theta) {
-  const double chi = (4.0 / 9.0 - t / 120.0) * (kPi - 2.0 * theta);
+  const double chi = (4.0 / 9.0 - t / 120.0) * (glm::pi<double>() - 2.0 * theta);
   const glm::dvec4 powers(theta * theta * theta, theta * theta, theta, 1.0);
   const glm::dvec3 by_turbidity(t * t, t, 1.0);
   const glm::dvec3 x(glm::dot(powers, {0.00166, -0.00375, 0.00209, 0.0}),

@@ -17,7 +17,6 @@
 namespace verdure {
 namespace {
 
-constexpr double kPi = glm::pi<double>();
 constexpr std::size_t kMostDegree = 31;
 constexpr std::size_t kMostOutputs = 3 * kMaxBands * (kMaxBands + 1) / 2;  // 84
 constexpr std::size_t kMostStride = (kMostOutputs + kFitLanes - 1) / kFitLanes * kFitLanes;
@@ -33,7 +32,7 @@ void chebyshev(float x, int degree, float* values) {
 
 /// The even points of a circle seen from the side: from 1 to -1, both included.
 double samplePoint(std::size_t k, std::size_t count) {
-  return std::cos(kPi * static_cast<double>(k) / static_cast<double>(count - 1));
+  return std::cos(glm::pi<double>() * static_cast<double>(k) / static_cast<double>(count - 1));
 }
 
 /// The matrix (degree + 1 rows, a column for each sample) that turns samples into coefficients of
@@ -118,7 +117,7 @@ SkyFit::SkyFit(const SkyModel& model, const SkyFitOptions& options) : options_(o
   const std::size_t suns = 2 * rows, airs = 2 * columns;
   std::vector<double> zeniths, turbidities, sun_coordinates, air_coordinates;
   for (std::size_t k = 0; k < suns; ++k) {
-    zeniths.push_back(0.25 * kPi * (1.0 + samplePoint(k, suns)));
+    zeniths.push_back(0.25 * glm::pi<double>() * (1.0 + samplePoint(k, suns)));
     sun_coordinates.push_back(sunCoordinate(zeniths.back()));
   }
   const double low = double{options.turbidity_min}, high = double{options.turbidity_max};
@@ -166,8 +165,9 @@ Harmonics SkyFit::atZenithAngle(float sun_zenith, float turbidity) const {
                             options_.turbidity_min, options_.turbidity_max),
                 "fit a wider range");
   std::array<float, kMostDegree + 1> x, y;
-  chebyshev(sunCoordinate(std::clamp(sun_zenith, 0.0f, static_cast<float>(0.5 * kPi))),
-            options_.sun_degree, x.data());
+  chebyshev(
+      sunCoordinate(std::clamp(sun_zenith, 0.0f, static_cast<float>(0.5 * glm::pi<double>()))),
+      options_.sun_degree, x.data());
   chebyshev(AirCoordinate(air_scale_, air_offset_)(turbidity), options_.turbidity_degree, y.data());
   std::array<float, kMostStride> out;
   sumPolynomials(x.data(), static_cast<std::size_t>(options_.sun_degree + 1), y.data(),
@@ -214,7 +214,8 @@ SkyFitErrors measureSkyFit(const SkyFit& fit, const SkyModel& model, int sun_ste
   const auto airs = static_cast<std::size_t>(turbidity_steps + 1);
   std::vector<Point> points(static_cast<std::size_t>(sun_steps + 1) * airs);
   const auto sunAt = [&](std::size_t k) {
-    return gridPoint(0.0f, static_cast<float>(0.5 * kPi), static_cast<int>(k / airs), sun_steps);
+    return gridPoint(0.0f, static_cast<float>(0.5 * glm::pi<double>()), static_cast<int>(k / airs),
+                     sun_steps);
   };
   const auto airAt = [&](std::size_t k) {
     return gridPoint(o.turbidity_min, o.turbidity_max, static_cast<int>(k % airs), turbidity_steps);

@@ -12,7 +12,6 @@
 namespace verdure {
 namespace {
 
-constexpr double kPi = glm::pi<double>();
 constexpr double kFirstNm = 380.0, kStepNm = 10.0;
 
 /// Radiance of the sun outside of the air, W / (m^2 sr nm), 380 to 750 nm (table 2).
@@ -46,7 +45,7 @@ glm::dvec3 colorMatching(double nm) {
 /// Share of the disk above the horizon.
 double visibleShare(double elevation, double radius) {
   const double s = std::clamp(elevation / radius, -1.0, 1.0);
-  return 0.5 + (std::asin(s) + s * std::sqrt(1.0 - s * s)) / kPi;
+  return 0.5 + (std::asin(s) + s * std::sqrt(1.0 - s * s)) / glm::pi<double>();
 }
 
 }  // namespace

@@ -21,17 +21,27 @@ layout(location = 3) centroid in vec2 covered_uv;
 // Irradiance / pi on the side of the vertex normal and on the other, from transfer vectors.
 layout(location = 4) centroid in vec3 front_light;
 layout(location = 5) centroid in vec3 back_light;
+/// Of the triangle: that of its first corner.
+layout(location = 6) flat in uint seed;
 layout(location = 0) out vec4 out_color;
 
 /// Which of the four samples an alpha-cut surface covers. Written here rather than left to the
 /// fixed alpha-to-coverage, whose rounding differs between drivers: alpha is steepened to an edge
 /// about one pixel wide around the cutoff, and a fixed pattern of thresholds over the pixels
-/// (Jimenez 2014, interleaved gradient noise) makes the mean coverage of large areas exact.
+/// (Jimenez 2014, interleaved gradient noise) makes the mean coverage of large areas exact. Each
+/// triangle shifts the pattern and turns the samples by its own random number (PCG's output hash):
+/// leaves behind each other would else cover the same samples, and many of them no more than one.
 int coverageMask(float alpha, float cutoff) {
+  uint random = seed * 747796405u + 2891336453u;
+  random = ((random >> ((random >> 28u) + 4u)) ^ random) * 277803737u;
+  random = (random >> 22u) ^ random;
   float coverage = clamp((alpha - cutoff) / max(fwidth(alpha), 0.125) + 0.5, 0.0, 1.0);
-  float threshold = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+  float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+  float threshold = fract(noise + float(random >> 8u) * exp2(-24.0));
   int count = int(floor(coverage * 4.0 + threshold));
-  return (1 << min(count, 4)) - 1;
+  int mask = (1 << min(count, 4)) - 1;
+  int turn = int(random & 3u);
+  return ((mask << turn) | (mask >> (4 - turn))) & 15;
 }
 
 void main() {

@@ -16,12 +16,14 @@ layout(location = 2) out vec2 out_uv;
 layout(location = 3) centroid out vec2 out_covered_uv;
 layout(location = 4) centroid out vec3 out_front_light;
 layout(location = 5) centroid out vec3 out_back_light;
+layout(location = 6) flat out uint out_seed;
 
 void main() {
   vec4 decoded = decodeNormal(encoded_normal);
   out_position = worldFromPlant(position);
   vec3 normal = worldNormal(decoded.xyz, kFlipNormal);
   out_normal = vec4(normal * inversesqrt(max(dot(normal, normal), 1e-30)), decoded.w);
+  out_seed = uint(gl_VertexIndex) + uint(gl_InstanceIndex) * 0x9e3779b9u;
   out_uv = uv;
   out_covered_uv = uv;
   out_front_light = front_light;

@@ -312,6 +312,36 @@ TEST_F(Render, AlphaCutCardsKeepTheirCoverageAtAnyDistance) {
   }
 }
 
+TEST_F(Render, CutCardsBehindEachOtherCoverIndependently) {
+  // A checkerboard far finer than a pixel lets half through; of four behind each other, one of 16.
+  Plant card = leafCard();
+  Image& image = card.textures[0].image;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      image.at(x, y)[3] = static_cast<std::uint8_t>((x + y) % 2 * 255);
+  Scene scene = itemScene(card, nullptr);
+  scene.items[0].world_from_plant.clear();
+  constexpr int kColumns = 16, kLayers = 4;
+  for (int i = 0; i < kColumns * kColumns; ++i)
+    for (int layer = 0; layer < kLayers; ++layer)
+      scene.items[0].world_from_plant.push_back(glm::translate(
+          glm::mat4(1),
+          {static_cast<float>(i % kColumns) - 7.5f, static_cast<float>(i / kColumns) - 7.5f,
+           0.001f * static_cast<float>(layer)}));
+  renderer().setScene(scene);
+  View view = smallView(128, 128);
+  view.background = glm::vec3(0.0f);
+  setFurnace(view, glm::vec3(1.0f));
+  view.terms = {.diffuse = false, .specular = false, .shadow = false};
+  view.camera.eye = {0, 0, 20};
+  view.camera.target = {0, 0, 0};
+  view.camera.vertical_fov = 2.0f * std::atan(0.5f * 15.0f / 20.0f);  // the cards fill the picture
+  const HdrImage picture = renderer().render(view).hdr;
+  double covered = 0.0;
+  for (const glm::vec3& pixel : picture.rgb) covered += static_cast<double>(pixel.r);
+  EXPECT_NEAR(covered / static_cast<double>(picture.rgb.size()), 15.0 / 16.0, 0.03);
+}
+
 TEST_F(Render, IsTheSameEachTimeAndFarFromTheOrigin) {
   Plant tree = ballTree(300, 0.4f);
   const CrownLight light = ballTreeLight(tree);

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "app/commands.h"
+#include "app/page.h"
 #include "base/files.h"
 #include "base/progress.h"
 #include "shared/density.h"
@@ -83,14 +84,6 @@ class FigureSet {
   View view_;
   std::string page_;
 };
-
-std::string svgOpen(int width, int height) {
-  return fmt::format(
-      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {0} {1}' width='{0}' "
-      "height='{1}' font-family='sans-serif' font-size='15'>\n"
-      "<rect width='{0}' height='{1}' fill='white'/>\n",
-      width, height);
-}
 
 /// Fig. 2: the implicit surface of two generators of the plane.
 std::string implicitSurfaceSvg() {
@@ -269,12 +262,7 @@ void runLuftFigures(const FiguresCommand& command) {
   const fs::path folder(command.output);
   speciesParameters(command.species);  // throws if there is no such species
   FigureSet figures(command, folder);
-  std::error_code problem;
-  fs::create_directories(folder, problem);
-  if (problem)
-    throw Error(command.output, "the folder cannot be made (" + problem.message() + ")",
-                "choose another with -o");
-  checkWritable(folder / "index.html");
+  makePageFolder(folder);
   Progress progress("figures luft");
   progress.show("figure 1");
   drawGroup(figures);

@@ -3,14 +3,22 @@
 #include <fmt/format.h>
 
 #include "base/files.h"
+#include "verdure/error.h"
 
 namespace verdure::app {
 
+void makePageFolder(const std::filesystem::path& folder) {
+  std::error_code problem;
+  std::filesystem::create_directories(folder, problem);
+  if (problem)
+    throw Error(folder.string(), "the folder cannot be made (" + problem.message() + ")",
+                "choose another with -o");
+  checkWritable(folder / "index.html");
+}
+
 Page::Page(std::filesystem::path folder, std::string title, std::string introduction)
     : folder_(std::move(folder)), title_(std::move(title)), introduction_(std::move(introduction)) {
-  std::error_code problem;
-  std::filesystem::create_directories(folder_, problem);
-  checkWritable(folder_ / "index.html");
+  makePageFolder(folder_);
 }
 
 void Page::heading(const std::string& text) {

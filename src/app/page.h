@@ -9,6 +9,9 @@
 
 namespace verdure::app {
 
+/// Makes the folder of a page unless it is there. Throws Error if index.html could not be written.
+void makePageFolder(const std::filesystem::path& folder);
+
 /// A folder of pictures and the page that shows them.
 class Page {
  public:

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/page.h"
 #include "app/sky_pictures.h"
 #include "base/files.h"
 #include "base/progress.h"
@@ -130,12 +131,7 @@ Image differencePicture(const HdrImage& a, const HdrImage& b, float step) {
 
 void writeSkyReport(const SkyReport& report) {
   const fs::path folder(report.folder);
-  std::error_code problem;
-  fs::create_directories(folder, problem);
-  if (problem)
-    throw Error(report.folder, "the folder cannot be made (" + problem.message() + ")",
-                "choose another");
-  checkWritable(folder / "index.html");
+  makePageFolder(folder);
   Progress progress("sky");
   progress.show("fitting");
   SkyFitOptions options;

@@ -51,7 +51,7 @@ std::vector<float> scaledTo(const std::vector<float>& x, const std::vector<float
 
 struct Columns {
   std::vector<double> rms, rank, fit_rms, fit_rank, leaf_rms, leaf_rank, ball_rms, ball_rank, angle,
-      crown, crown_by_openness, own, own_by_openness, wood, times;
+      crown, crown_fit, crown_by_openness, own, own_by_openness, wood, wood_fit, times;
 };
 
 void addPlant(const Plant& plant, std::size_t samples, std::FILE* dump, Columns& columns) {
@@ -68,12 +68,10 @@ void addPlant(const Plant& plant, std::size_t samples, std::FILE* dump, Columns&
   rays.bounces = 0;
   const std::vector<Openness> openness = traceOpenness(plant, chosen, rays);
 
-  Timer timer;
   const std::vector<Surfel> surfels = plantSurfels(plant);
   const OpticalDepthField field(surfels, plantDepthOptions(plant, surfels));
   double terms = 0.0;
   const std::vector<DepthSums> sums = vertexDepths(plant, surfels, field, &terms);
-  const double seconds = timer.lap();
   rays.rays = 256;
   Timer ray_timer;
   traceOpenness(plant, std::span(chosen).first(1), rays);
@@ -83,9 +81,9 @@ void addPlant(const Plant& plant, std::size_t samples, std::FILE* dump, Columns&
       std::max(0.0, ray_timer.lap() - build) / static_cast<double>(chosen.size());
   const double ray_seconds = build + per_vertex * static_cast<double>(all.size());
 
-  DepthOptions options;
-  options.fit = true;
-  const DepthBake bake = bakeOpticalDepth(plant, options);
+  const DepthBake bake = bakeOpticalDepth(plant);
+  const DepthModels& models = bake.report.models;
+  const double seconds = bake.report.seconds_total;
   rays.rays = 256;
   const std::vector<glm::vec3> crown_light = traceAmbient(plant, chosen, rays, &bake.light);
   const std::vector<glm::vec3> own_light = traceAmbient(plant, chosen, rays);
@@ -105,7 +103,8 @@ void addPlant(const Plant& plant, std::size_t samples, std::FILE* dump, Columns&
     vertex += mesh.positions.size();
   }
   std::vector<float> truth, predicted, fitted, leaf_truth, leaf_predicted, ball;
-  std::vector<float> crown_truth, crown_outward, own_truth, own_hemisphere, wood_truth, wood_light;
+  std::vector<float> crown_truth, crown_outward, crown_fitted, own_truth, own_hemisphere;
+  std::vector<float> wood_truth, wood_light, wood_fitted;
   std::vector<glm::vec3> open, away;
   std::size_t hidden = 0;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
@@ -119,20 +118,22 @@ void addPlant(const Plant& plant, std::size_t samples, std::FILE* dump, Columns&
     const DepthSums& s = sums[at];
     truth.push_back(openness[i].share);
     predicted.push_back(opennessOf(s, DepthModels{}.of(mesh.kind)));
-    fitted.push_back(opennessOf(s, bake.report.models.of(mesh.kind)));
+    fitted.push_back(opennessOf(s, models.of(mesh.kind)));
     ball.push_back(ball_ambient[at]);
     if (dump != nullptr)
       fmt::print(dump, "{} {} {} {} {} {} {} {}\n", plant.name, leaf ? 1 : 0, openness[i].share,
                  s.depth, glm::length(s.toward), s.hemisphere, crown_light[i].x, own_light[i].x);
     if (!leaf) {
       wood_truth.push_back(own_light[i].x);
-      wood_light.push_back(kWoodLight.a + kWoodLight.b * std::exp(-kWoodLight.k * s.hemisphere));
+      wood_light.push_back(hemisphereLightOf(s, kWoodLight));
+      wood_fitted.push_back(hemisphereLightOf(s, models.wood_light));
       continue;
     }
     leaf_truth.push_back(truth.back());
     leaf_predicted.push_back(predicted.back());
     crown_truth.push_back(crown_light[i].x);
     crown_outward.push_back(outwardLightOf(s, kCrownLight));
+    crown_fitted.push_back(outwardLightOf(s, models.crown_light));
     own_truth.push_back(own_light[i].x);
     own_hemisphere.push_back(-s.hemisphere);
     if (glm::length(openness[i].direction) > 0.02f && glm::length(s.toward) > 0.0f) {
@@ -148,7 +149,9 @@ void addPlant(const Plant& plant, std::size_t samples, std::FILE* dump, Columns&
                       agreementOf(scaledTo(leaf_predicted, crown_truth), crown_truth),
                   own = agreementOf(own_hemisphere, own_truth),
                   own_by_openness = agreementOf(leaf_predicted, own_truth),
-                  wood = agreementOf(wood_light, wood_truth);
+                  wood = agreementOf(wood_light, wood_truth),
+                  crown_fit = agreementOf(crown_fitted, crown_truth),
+                  wood_fit = agreementOf(wood_fitted, wood_truth);
   const double angle = meanAngleDeg(open, away);
   columns.rms.push_back(plain.rms);
   columns.rank.push_back(plain.rank);
@@ -160,18 +163,20 @@ void addPlant(const Plant& plant, std::size_t samples, std::FILE* dump, Columns&
   columns.ball_rank.push_back(metaball.rank);
   columns.angle.push_back(angle);
   columns.crown.push_back(crown.rms);
+  columns.crown_fit.push_back(crown_fit.rms);
   columns.crown_by_openness.push_back(crown_by_openness.rms);
   columns.own.push_back(own.rank);
   columns.own_by_openness.push_back(own_by_openness.rank);
   columns.wood.push_back(wood.rms);
+  columns.wood_fit.push_back(wood_fit.rms);
   columns.times.push_back(ray_seconds / seconds);
   fmt::print(
       "| {} | {} | {:.0f} % | {:.3f}, {:.2f} | {:.3f}, {:.2f} | {:.3f}, {:.2f} | {:.3f}, {:.2f} "
-      "| {:.0f} | {:.3f} | {:.2f} | {:.3f} | {:.2f} s | {:.0f} |\n",
+      "| {:.0f} | {:.3f}, {:.3f} | {:.2f} | {:.3f}, {:.3f} | {:.2f} s | {:.0f} |\n",
       plant.name, all.size(),
       100.0 * static_cast<double>(hidden) / static_cast<double>(chosen.size()), plain.rms,
       plain.rank, leaves.rms, leaves.rank, fit.rms, fit.rank, metaball.rms, metaball.rank, angle,
-      crown.rms, own.rank, wood.rms, seconds, ray_seconds / seconds);
+      crown.rms, crown_fit.rms, own.rank, wood.rms, wood_fit.rms, seconds, ray_seconds / seconds);
   std::fflush(stdout);
 }
 
@@ -191,8 +196,10 @@ int run(int argc, char** argv) {
   if (names.empty())
     for (const SpeciesInfo& s : speciesList()) names.push_back(s.name);
   fmt::print(
-      "| plant | vertices | hidden | all: RMS, rank | leaves | fitted | metaball | open side, "
-      "degrees | crown light RMS | leaf light rank | wood light RMS | time | rays / field |\n"
+      "| plant | vertices | hidden | constants: RMS, rank | leaves | fitted | metaball | open "
+      "side, "
+      "degrees | crown light RMS: constants, fitted | leaf light rank | wood light RMS: "
+      "constants, fitted | time | rays / field |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   Columns c;
   for (const std::string& name : names) {
@@ -210,10 +217,10 @@ int run(int argc, char** argv) {
   }
   fmt::print(
       "| median | | | {:.3f}, {:.2f} | {:.3f}, {:.2f} | {:.3f}, {:.2f} | {:.3f}, {:.2f} | "
-      "{:.0f} | {:.3f} | {:.2f} | {:.3f} | | {:.0f} |\n",
+      "{:.0f} | {:.3f}, {:.3f} | {:.2f} | {:.3f}, {:.3f} | | {:.0f} |\n",
       median(c.rms), median(c.rank), median(c.leaf_rms), median(c.leaf_rank), median(c.fit_rms),
       median(c.fit_rank), median(c.ball_rms), median(c.ball_rank), median(c.angle), median(c.crown),
-      median(c.own), median(c.wood), median(c.times));
+      median(c.crown_fit), median(c.own), median(c.wood), median(c.wood_fit), median(c.times));
   fmt::print(
       "\nCrown light by openness alone (scaled to fit): RMS {:.3f}; leaf light by openness "
       "alone: rank {:.2f}\n",

@@ -46,13 +46,19 @@ struct RayOptions {
 struct Openness {
   float share = 1.0f;         ///< of all directions that are free, [0, 1]
   glm::vec3 direction{0.0f};  ///< mean of the free directions (the "bent normal"), length <= 1
+  /// Share of an even sky's light that reaches the side of a given normal: the free directions of
+  /// its hemisphere, weighted by the cosine. 1 if no normals were given.
+  float light = 1.0f;
 };
 
-/// RayOptions::bounces is not used. Results are for the vertices in order and do not depend on
+/// RayOptions::bounces is not used. `normals`, if any: a unit normal for each vertex asked for.
+/// Results are for the vertices in order and do not depend on
 /// which other vertices are asked for, nor on threads. Throws Error: options out of range, a vertex
-/// that the plant has not, a scene over max_memory_bytes, cancelled.
+/// that the plant has not, another number of normals than of vertices, a scene over
+/// max_memory_bytes, cancelled.
 std::vector<Openness> traceOpenness(const Plant& plant, std::span<const VertexId> vertices,
-                                    const RayOptions& options = {});
+                                    const RayOptions& options = {},
+                                    std::span<const glm::vec3> normals = {});
 
 /// Ambient occlusion: the light that reaches a vertex's hemisphere, weighted by the cosine to its
 /// normal, from a world of even light 1, linear RGB (1 = open). Light is reflected diffusely by

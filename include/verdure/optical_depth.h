@@ -94,7 +94,7 @@ inline constexpr DepthModel kLeafDepth{0.04f, 1.095f, 0.80f};
 inline constexpr DepthModel kWoodDepth{0.055f, 0.83f, 0.86f};
 /// Of wood's hemisphere: light = a + b exp(-k hemisphere).
 inline constexpr DepthModel kWoodLight{0.06f, 0.89f, 0.66f};
-/// Of leaves with crown normals, for outwardLightOf(); its k goes with that of the leaves.
+/// Of leaves with crown normals, for outwardLightOf().
 inline constexpr DepthModel kCrownLight{0.0f, 0.954f, 0.66f};
 
 float opennessOf(const DepthSums& sums, const DepthModel& model);
@@ -102,11 +102,16 @@ float opennessOf(const DepthSums& sums, const DepthModel& model);
 /// plant is thinnest (cosine-weighted mean over that hemisphere).
 float outwardLightOf(const DepthSums& sums, const DepthModel& model);
 
-/// The models of a plant's leaves and wood. The defaults were fitted to traced openness over the
-/// eight grown species and ten foreign plants (docs/openness.md).
+/// Of wood: the light of an even sky on its normal's hemisphere.
+float hemisphereLightOf(const DepthSums& sums, const DepthModel& model);
+
+/// The models of a plant's leaves and wood. The defaults were fitted to rays over the eight grown
+/// species and ten foreign plants (docs/openness.md).
 struct DepthModels {
-  DepthModel leaf = kLeafDepth;
+  DepthModel leaf = kLeafDepth;  ///< openness
   DepthModel wood = kWoodDepth;
+  DepthModel crown_light = kCrownLight;  ///< of leaves with crown normals
+  DepthModel wood_light = kWoodLight;
   DepthModel of(PartKind kind) const { return kind == PartKind::kFoliage ? leaf : wood; }
 };
 
@@ -125,13 +130,16 @@ struct DepthFit {
   DepthModels models;
   std::size_t samples = 0;  ///< traced vertices; those that see nothing at all are left out
   Agreement before, after;  ///< of openness at the samples: defaults, fitted models
+  /// The same of the light on leaves with crown normals and on wood.
+  Agreement light_before, light_after;
 };
 
 struct DepthOptions {
   CrownNormals normals = CrownNormals::kOpticalDepth;  ///< or kKeep
   float blend = 1.0f;                                  ///< 0 = leaf normal, 1 = crown normal
-  bool fit = false;        ///< fit the models to openness traced at some hundred vertices
-  std::uint32_t seed = 1;  ///< of the choice of these
+  /// Fits the models to rays traced from some hundred of the plant's vertices; else the defaults.
+  bool fit = true;
+  std::uint32_t seed = 1;                               ///< of the choice of these
   std::size_t max_memory_bytes = std::size_t{4} << 30;  ///< of the rays' scene
   std::function<void(const char* step, double share)> progress;
 };

@@ -42,8 +42,8 @@ struct BakeParameters {
   std::string field;            ///< metaball or optical-depth; empty: as fieldOr() finds
   std::string metaball_option;  ///< one that was given and that only the metaball field has
   std::string norm = "2";
-  std::string normals;  ///< empty: the field's own
-  bool fit = false;
+  std::string normals;      ///< empty: the field's own
+  std::optional<bool> fit;  ///< unset: the optical-depth field's is fitted, the metaballs' is not
   double max_memory_mib = 4096;
 
   /// The field that was named, else the one that the given options need, else `fallback`. Throws

@@ -169,8 +169,10 @@ int run(int argc, char** argv) {
   bake_app->add_option("-o,--output", bake.output, "File to write: .glb or .gltf")->required();
   addLoadOptions(*bake_app, bake.load);
   addBakeOptions(*bake_app, bake.bake, "Density field");
-  bake_app->add_flag("--fit", bake.bake.fit,
-                     "Choose the field's parameters by rays traced from some hundred vertices");
+  bake_app->add_flag_function(
+      "--fit,!--no-fit", [&bake](std::int64_t count) { bake.bake.fit = count > 0; },
+      "Choose the field's parameters by rays traced from some hundred vertices (metaball: not by "
+      "default)");
   bake_app->add_option("--surface", bake.surface,
                        "Use this surface instead of the field's: .obj .ply .glb");
   bake_app->add_option("--population", bake.population,

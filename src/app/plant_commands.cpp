@@ -152,7 +152,7 @@ void bakePopulation(const BakeCommand& command) {
     throw Error("--population", "cannot be used with rays (--ambient, --transfer, --normals bent)",
                 "bake each plant alone");
   command.bake.fieldOr(BakeField::kMetaball);  // the optical-depth field knows no neighbours
-  if (command.bake.fit)
+  if (command.bake.fit.value_or(false))
     throw Error("--fit", "cannot be used with --population",
                 "fit one plant and pass its parameters");
   DensityOptions options = command.bake.checked();
@@ -284,7 +284,7 @@ DepthOptions BakeParameters::checkedDepth() const {
   o.blend = common.blend;
   o.seed = common.seed;
   o.max_memory_bytes = common.max_memory_bytes;
-  o.fit = fit;
+  o.fit = fit.value_or(true);
   return o;
 }
 
@@ -379,7 +379,7 @@ void runBake(const BakeCommand& command) {
     if (field == BakeField::kMetaball) {
       showProgress(options, progress);
       std::optional<DensityFit> fit;
-      if (parameters.fit) options = fitDensity(plant, options, &fit.emplace());
+      if (parameters.fit.value_or(false)) options = fitDensity(plant, options, &fit.emplace());
       DensityBake bake = bakeDensity(plant, options, surface ? &*surface : nullptr);
       bake.report.fit = fit;
       light = std::move(bake.light);
@@ -420,6 +420,8 @@ std::string jsonOf(const DepthReport& r) {
                {"model",
                 {{"leaf", jsonOf(r.models.leaf)},
                  {"wood", jsonOf(r.models.wood)},
+                 {"crown_light", jsonOf(r.models.crown_light)},
+                 {"wood_light", jsonOf(r.models.wood_light)},
                  {"near_gain", r.near_gain},
                  {"near_radius_m", r.near_radius}}},
                {"surfels", r.surfels},
@@ -440,7 +442,9 @@ std::string jsonOf(const DepthReport& r) {
   if (r.fit)
     json["fit"] = {{"samples", r.fit->samples},
                    {"before", jsonOf(r.fit->before)},
-                   {"after", jsonOf(r.fit->after)}};
+                   {"after", jsonOf(r.fit->after)},
+                   {"light_before", jsonOf(r.fit->light_before)},
+                   {"light_after", jsonOf(r.fit->light_after)}};
   return json.dump(2);
 }
 

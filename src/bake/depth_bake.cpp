@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/gtc/type_precision.hpp>
 
 #include "bake/depth_fit.h"
+#include "bake/vertex_fans.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "verdure/error.h"
@@ -12,46 +12,6 @@
 
 namespace verdure {
 namespace {
-
-/// The triangles that meet at each vertex, by position.
-class Fans {
- public:
-  explicit Fans(const Mesh& mesh) : fan_of_vertex_(mesh.positions.size()) {
-    // A hash table of positions: sorting them takes several times as long.
-    std::size_t size = 16;
-    while (size < 2 * mesh.positions.size()) size *= 2;
-    std::vector<std::uint32_t> table(size, kNone);
-    std::vector<std::uint32_t> first_vertex;
-    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
-      const glm::vec3 p = mesh.positions[v] + 0.0f;  // -0 is 0
-      std::uint64_t key = 1469598103934665603ull;
-      for (int a = 0; a < 3; ++a) key = (key ^ glm::floatBitsToUint(p[a])) * 0x9e3779b97f4a7c15ull;
-      std::size_t slot = (key >> 20) & (size - 1);
-      while (table[slot] != kNone && mesh.positions[first_vertex[table[slot]]] != p)
-        slot = (slot + 1) & (size - 1);
-      if (table[slot] == kNone) {
-        table[slot] = static_cast<std::uint32_t>(first_vertex.size());
-        first_vertex.push_back(v);
-      }
-      fan_of_vertex_[v] = table[slot];
-    }
-    first_.assign(first_vertex.size() + 1, 0);
-    for (const std::uint32_t v : mesh.indices) ++first_[fan_of_vertex_[v] + 1];
-    for (std::size_t f = 1; f < first_.size(); ++f) first_[f] += first_[f - 1];
-    triangles_.resize(mesh.indices.size());
-    std::vector<std::uint32_t> filled(first_.begin(), first_.end() - 1);
-    for (std::size_t i = 0; i < mesh.indices.size(); ++i)
-      triangles_[filled[fan_of_vertex_[mesh.indices[i]]]++] = static_cast<std::uint32_t>(i / 3);
-  }
-
-  std::span<const std::uint32_t> at(std::size_t vertex) const {
-    const std::uint32_t fan = fan_of_vertex_[vertex];
-    return std::span(triangles_).subspan(first_[fan], first_[fan + 1] - first_[fan]);
-  }
-
- private:
-  std::vector<std::uint32_t> fan_of_vertex_, first_, triangles_;
-};
 
 void checkOptions(const DepthOptions& o) {
   if (!(o.blend >= 0.0f && o.blend <= 1.0f))
@@ -75,16 +35,18 @@ void checkFoliage(const Plant& plant) {
                 "check the scale of the foliage");
 }
 
-glm::vec3 crownNormal(const DepthSums& sums, const glm::vec3& own, float blend) {
-  const float length = glm::length(sums.toward);
-  if (!(length > 1e-6f * sums.depth)) return own;
-  const glm::vec3 crown = -sums.toward / length;
+glm::vec3 blended(const glm::vec3& own, const glm::vec3& crown, float blend) {
   const glm::vec3 mixed = blend < 1.0f ? glm::mix(own, crown, blend) : crown;
-  const float mixed_length = glm::length(mixed);
-  return mixed_length > 1e-4f ? mixed / mixed_length : own;
+  const float length = glm::length(mixed);
+  return length > 1e-4f ? mixed / length : own;
 }
 
 }  // namespace
+
+glm::vec3 crownNormalOf(const DepthSums& sums, const glm::vec3& own) {
+  const float length = glm::length(sums.toward);
+  return length > 1e-6f * sums.depth ? -sums.toward / length : own;
+}
 
 DepthFieldOptions plantDepthOptions(const Plant& plant, std::span<const Surfel> surfels) {
   double leaf_area = 0.0, area = 0.0;
@@ -124,7 +86,7 @@ std::vector<DepthSums> vertexDepths(const Plant& plant, std::span<const Surfel> 
   }
   parallelFor(plant.meshes.size(), 1, [&](std::size_t m) {
     const Mesh& mesh = plant.meshes[m];
-    const Fans fans(mesh);
+    const VertexFans fans(mesh);
     parallelChunks(mesh.positions.size(), 8192, [&](std::size_t begin, std::size_t end) {
       std::vector<Surfel> own;
       for (std::size_t v = begin; v < end; ++v) {
@@ -183,20 +145,18 @@ DepthBake bakeOpticalDepth(const Plant& plant, const DepthOptions& options) {
     const bool leaves = mesh.kind == PartKind::kFoliage;
     const bool turned = leaves && options.normals == CrownNormals::kOpticalDepth;
     const DepthModel model = report.models.of(mesh.kind);
-    DepthModel crown = kCrownLight;
-    crown.k *= model.k / kLeafDepth.k;
     out.normals = mesh.normals;
     out.ambient.resize(mesh.positions.size());
     std::vector<float> openness(mesh.positions.size());
     parallelFor(mesh.positions.size(), 4096, [&](std::size_t v) {
       const DepthSums& s = sums[first + v];
       openness[v] = opennessOf(s, model);
-      const float light = !leaves
-                              ? kWoodLight.a + kWoodLight.b * std::exp(-kWoodLight.k * s.hemisphere)
-                          : turned ? outwardLightOf(s, crown)
+      const float light = !leaves  ? hemisphereLightOf(s, report.models.wood_light)
+                          : turned ? outwardLightOf(s, report.models.crown_light)
                                    : openness[v];
       out.ambient[v] = std::clamp(light, 1.0f / 255.0f, 1.0f);
-      if (turned) out.normals[v] = crownNormal(s, mesh.normals[v], options.blend);
+      if (turned)
+        out.normals[v] = blended(mesh.normals[v], crownNormalOf(s, mesh.normals[v]), options.blend);
     });
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
       report.depth_min = std::min(report.depth_min, sums[first + v].depth);

@@ -11,8 +11,8 @@
 namespace verdure {
 namespace {
 
-constexpr std::size_t kModelSamples = 384;  // of each kind
-constexpr int kModelRays = 256;
+constexpr std::size_t kModelSamples = 192;  // of each kind
+constexpr int kModelRays = 128;
 constexpr std::size_t kFewest = 24;  // fewer say too little
 
 /// Ranks from 0, ties at their mean.
@@ -31,14 +31,17 @@ std::vector<double> ranksOf(std::span<const float> values) {
   return ranks;
 }
 
+using Prediction = float (*)(const DepthSums&, const DepthModel&);
+
 /// Least squares for a and b at a given k, then golden section over the logarithm of k.
-DepthModel fitModel(const std::vector<DepthSums>& sums, const std::vector<float>& traced) {
+DepthModel fitModel(Prediction predict, const std::vector<DepthSums>& sums,
+                    const std::vector<float>& traced) {
+  std::vector<double> x(sums.size());
   const auto solve = [&](double k, double& error) {
     const DepthModel plain{0.0f, 1.0f, static_cast<float>(k)};
     double s1 = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-    std::vector<double> x(sums.size());
     for (std::size_t i = 0; i < sums.size(); ++i) {
-      x[i] = double{opennessOf(sums[i], plain)};
+      x[i] = double{predict(sums[i], plain)};
       const double y = double{traced[i]};
       s1 += 1, sx += x[i], sy += y, sxx += x[i] * x[i], sxy += x[i] * y;
     }
@@ -48,7 +51,7 @@ DepthModel fitModel(const std::vector<DepthSums>& sums, const std::vector<float>
     const DepthModel model{static_cast<float>(a), static_cast<float>(b), static_cast<float>(k)};
     error = 0.0;
     for (std::size_t i = 0; i < sums.size(); ++i) {
-      const double e = double{opennessOf(sums[i], model)} - double{traced[i]};
+      const double e = std::clamp(a + b * x[i], 0.0, 1.0) - double{traced[i]};
       error += e * e;
     }
     return model;
@@ -103,7 +106,8 @@ Agreement agreementOf(std::span<const float> predicted, std::span<const float> t
 }
 
 TracedSamples traceSamples(const Plant& plant, std::size_t count, int rays, std::uint32_t seed,
-                           std::size_t max_memory_bytes) {
+                           std::size_t max_memory_bytes,
+                           const std::function<glm::vec3(VertexId)>& normalOf) {
   Random random(seed);
   std::vector<VertexId> chosen;
   for (const PartKind kind : {PartKind::kFoliage, PartKind::kWood}) {
@@ -125,49 +129,69 @@ TracedSamples traceSamples(const Plant& plant, std::size_t count, int rays, std:
   options.rays = rays;
   options.seed = seed;
   options.max_memory_bytes = max_memory_bytes;
-  const std::vector<Openness> traced = traceOpenness(plant, chosen, options);
+  std::vector<glm::vec3> normals;
+  if (normalOf)
+    for (const VertexId id : chosen) normals.push_back(normalOf(id));
+  const std::vector<Openness> traced = traceOpenness(plant, chosen, options, normals);
   TracedSamples samples;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     if (!(traced[i].share > 0.0f)) continue;
     samples.vertices.push_back(chosen[i]);
     samples.openness.push_back(traced[i].share);
+    samples.light.push_back(traced[i].light);
   }
   return samples;
 }
 
 DepthFit fitDepthModels(const Plant& plant, std::span<const DepthSums> sums, std::uint32_t seed,
                         std::size_t max_memory_bytes) {
-  const TracedSamples samples =
-      traceSamples(plant, kModelSamples, kModelRays, seed, max_memory_bytes);
   std::vector<std::size_t> first;
   std::size_t vertex = 0;
   for (const Mesh& mesh : plant.meshes) {
     first.push_back(vertex);
     vertex += mesh.positions.size();
   }
+  const auto sumsAt = [&](VertexId id) -> const DepthSums& {
+    return sums[first[id.mesh] + id.vertex];
+  };
+  const auto kindAt = [&](VertexId id) { return plant.meshes[id.mesh].kind; };
+  const TracedSamples samples =
+      traceSamples(plant, kModelSamples, kModelRays, seed, max_memory_bytes, [&](VertexId id) {
+        const glm::vec3& own = plant.meshes[id.mesh].normals[id.vertex];
+        return kindAt(id) == PartKind::kFoliage ? crownNormalOf(sumsAt(id), own) : own;
+      });
   DepthFit fit;
   fit.samples = samples.vertices.size();
   for (const PartKind kind : {PartKind::kFoliage, PartKind::kWood}) {
     std::vector<DepthSums> some;
-    std::vector<float> traced;
+    std::vector<float> openness, light;
     for (std::size_t i = 0; i < fit.samples; ++i) {
-      const VertexId id = samples.vertices[i];
-      if (plant.meshes[id.mesh].kind != kind) continue;
-      some.push_back(sums[first[id.mesh] + id.vertex]);
-      traced.push_back(samples.openness[i]);
+      if (kindAt(samples.vertices[i]) != kind) continue;
+      some.push_back(sumsAt(samples.vertices[i]));
+      openness.push_back(samples.openness[i]);
+      light.push_back(samples.light[i]);
     }
-    if (some.size() >= kFewest)
-      (kind == PartKind::kFoliage ? fit.models.leaf : fit.models.wood) = fitModel(some, traced);
+    if (some.size() < kFewest) continue;
+    const bool leaves = kind == PartKind::kFoliage;
+    (leaves ? fit.models.leaf : fit.models.wood) = fitModel(opennessOf, some, openness);
+    (leaves ? fit.models.crown_light : fit.models.wood_light) =
+        fitModel(leaves ? outwardLightOf : hemisphereLightOf, some, light);
   }
-  const auto agreement = [&](const DepthModels& models) {
+  const auto agreement = [&](const DepthModels& models, bool of_light) {
     std::vector<float> predicted;
-    for (const VertexId id : samples.vertices)
-      predicted.push_back(
-          opennessOf(sums[first[id.mesh] + id.vertex], models.of(plant.meshes[id.mesh].kind)));
-    return agreementOf(predicted, samples.openness);
+    for (const VertexId id : samples.vertices) {
+      const DepthSums& s = sumsAt(id);
+      const bool leaves = kindAt(id) == PartKind::kFoliage;
+      predicted.push_back(!of_light ? opennessOf(s, models.of(kindAt(id)))
+                          : leaves  ? outwardLightOf(s, models.crown_light)
+                                    : hemisphereLightOf(s, models.wood_light));
+    }
+    return agreementOf(predicted, of_light ? samples.light : samples.openness);
   };
-  fit.before = agreement(DepthModels{});
-  fit.after = agreement(fit.models);
+  fit.before = agreement(DepthModels{}, false);
+  fit.after = agreement(fit.models, false);
+  fit.light_before = agreement(DepthModels{}, true);
+  fit.light_after = agreement(fit.models, true);
   return fit;
 }
 

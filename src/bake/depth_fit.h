@@ -1,6 +1,7 @@
 #ifndef VERDURE_BAKE_DEPTH_FIT_H_
 #define VERDURE_BAKE_DEPTH_FIT_H_
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -14,13 +15,18 @@ namespace verdure {
 struct TracedSamples {
   std::vector<VertexId> vertices;
   std::vector<float> openness;
+  std::vector<float> light;  ///< on the side of the given normals, see Openness::light
 };
 
 /// `count` vertices of each kind of part, taken evenly at random (all, where there are fewer).
 TracedSamples traceSamples(const Plant& plant, std::size_t count, int rays, std::uint32_t seed,
-                           std::size_t max_memory_bytes);
+                           std::size_t max_memory_bytes,
+                           const std::function<glm::vec3(VertexId)>& normalOf = {});
 
-/// Fits a, b and k of leaves and of wood to traced openness. `sums` are those of all vertices.
+/// Where a leaf's vertex looks: out of the crown, where it is thinnest; `own` in its very middle.
+glm::vec3 crownNormalOf(const DepthSums& sums, const glm::vec3& own);
+
+/// Fits a, b and k of all models to traced openness and light. `sums` are those of all vertices.
 DepthFit fitDepthModels(const Plant& plant, std::span<const DepthSums> sums, std::uint32_t seed,
                         std::size_t max_memory_bytes);
 

@@ -5,6 +5,7 @@
 
 #include "bake/light_path.h"
 #include "bake/ray_bake.h"
+#include "verdure/error.h"
 
 namespace verdure {
 
@@ -17,7 +18,9 @@ std::vector<VertexId> allVertices(const Plant& plant) {
 }
 
 std::vector<Openness> traceOpenness(const Plant& plant, std::span<const VertexId> vertices,
-                                    const RayOptions& options) {
+                                    const RayOptions& options, std::span<const glm::vec3> normals) {
+  if (!normals.empty() && normals.size() != vertices.size())
+    throw Error(plant.name, "as many normals as vertices are needed", "give one for each");
   const RayBake bake(plant, options);
   std::vector<Openness> result(vertices.size());
   bake.forEachVertex(vertices, [&](std::size_t i, Random& random) {
@@ -26,6 +29,7 @@ std::vector<Openness> traceOpenness(const Plant& plant, std::span<const VertexId
     std::array<std::uint8_t, RayBake::kBatch> free;
     int open = 0;
     glm::vec3 sum(0.0f);
+    float facing = 0.0f;
     for (int first = 0; first < options.rays; first += RayBake::kBatch) {
       std::size_t count = 0;
       for (int r = first; r < std::min(first + RayBake::kBatch, options.rays); ++r) {
@@ -39,9 +43,12 @@ std::vector<Openness> traceOpenness(const Plant& plant, std::span<const VertexId
         if (free[r] == 0) continue;
         ++open;
         sum += rays[r].direction;
+        if (!normals.empty()) facing += std::max(glm::dot(rays[r].direction, normals[i]), 0.0f);
       }
     }
     result[i].share = static_cast<float>(open) / static_cast<float>(options.rays);
+    if (!normals.empty())
+      result[i].light = std::min(4.0f * facing / static_cast<float>(options.rays), 1.0f);
     if (open > 0) result[i].direction = sum / static_cast<float>(open);
   });
   return result;

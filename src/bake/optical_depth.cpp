@@ -17,7 +17,7 @@ constexpr const char* kWhere = "optical depth";
 // Points that share one list of terms: a few vectors, close together.
 constexpr std::size_t kGroup = 64;
 
-/// The pieces that sortByMedians() leaves: halving needs no coordinates to be repeated.
+/// The pieces that sortedByMedians() leaves: halving needs no coordinates to be repeated.
 void piecesOf(std::size_t first, std::size_t last,
               std::vector<std::pair<std::size_t, std::size_t>>& pieces) {
   if (last - first <= kGroup) {
@@ -104,9 +104,7 @@ const DepthFieldOptions& OpticalDepthField::options() const {
 double OpticalDepthField::sumAt(std::span<const glm::vec3> points,
                                 std::span<const glm::vec3> normals,
                                 std::span<DepthSums> sums) const {
-  std::vector<std::uint32_t> order(points.size());
-  std::iota(order.begin(), order.end(), 0u);
-  sortByMedians(order, points, kGroup);
+  const std::vector<std::uint32_t> order = sortedByMedians(points, kGroup);
   std::vector<std::pair<std::size_t, std::size_t>> pieces;
   piecesOf(0, points.size(), pieces);
   std::vector<double> evaluated(pieces.size());
@@ -165,6 +163,10 @@ DepthSums OpticalDepthField::termsOf(std::span<const Surfel> surfels, const glm:
 
 float opennessOf(const DepthSums& sums, const DepthModel& model) {
   return modelled(LinearDepth(sums, model).mean(), model);
+}
+
+float hemisphereLightOf(const DepthSums& sums, const DepthModel& model) {
+  return modelled(std::exp(-double{model.k} * double{sums.hemisphere}), model);
 }
 
 float outwardLightOf(const DepthSums& sums, const DepthModel& model) {

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "bake/vertex_fans.h"
 #include "rays/ray_scene.h"
 #include "verdure/occlusion.h"
 
@@ -17,14 +18,11 @@ class RayStarts {
   Ray from(VertexId id, const glm::vec3& direction) const;
 
  private:
-  /// Of a foliage mesh: unit normals of the triangles that meet at each vertex; those of vertices
-  /// at one position are shared. Empty for wood.
+  /// Of a foliage mesh; empty for wood.
   struct Fans {
-    std::vector<std::uint32_t> fan_of_vertex;
-    std::vector<std::uint32_t> first;  ///< of each fan, and the end
-    std::vector<glm::vec3> normals;
+    VertexFans fans;
+    std::vector<glm::vec3> normals;  ///< of VertexFans::triangles(), unit, or 0 of no area
   };
-  static Fans fansOf(const Mesh& mesh);
 
   const Plant& plant_;
   const RayScene& scene_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "base/parallel.h"
 
@@ -14,47 +13,57 @@ constexpr std::size_t kPiece = 8;
 // The tree is halved this often before its parts go to threads.
 constexpr std::size_t kTopLevels = 4;
 
+/// Carried along, since looking positions up by number takes twice as long.
+struct Placed {
+  glm::vec3 position;
+  std::uint32_t number;
+};
+
 /// Puts the lower half along the longest side in front; returns where the upper begins.
-std::size_t halve(std::span<std::uint32_t> order, std::span<const glm::vec3> positions) {
-  glm::vec3 low = positions[order[0]], high = low;
-  for (const std::uint32_t i : order) {
-    low = glm::min(low, positions[i]);
-    high = glm::max(high, positions[i]);
+std::size_t halve(std::span<Placed> points) {
+  glm::vec3 low = points[0].position, high = low;
+  for (const Placed& p : points) {
+    low = glm::min(low, p.position);
+    high = glm::max(high, p.position);
   }
   const glm::vec3 size = high - low;
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  const std::size_t middle = order.size() / 2;
-  std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(middle), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) {
-                     const float u = positions[a][axis], v = positions[b][axis];
-                     return u != v ? u < v : a < b;
+  const std::size_t middle = points.size() / 2;
+  std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(middle),
+                   points.end(), [axis](const Placed& a, const Placed& b) {
+                     const float u = a.position[axis], v = b.position[axis];
+                     return u != v ? u < v : a.number < b.number;
                    });
   return middle;
 }
 
-void halveDownTo(std::span<std::uint32_t> order, std::span<const glm::vec3> positions,
-                 std::size_t piece) {
-  if (order.size() <= piece) return;
-  const std::size_t middle = halve(order, positions);
-  halveDownTo(order.first(middle), positions, piece);
-  halveDownTo(order.subspan(middle), positions, piece);
+void halveDownTo(std::span<Placed> points, std::size_t piece) {
+  if (points.size() <= piece) return;
+  const std::size_t middle = halve(points);
+  halveDownTo(points.first(middle), piece);
+  halveDownTo(points.subspan(middle), piece);
 }
 
 }  // namespace
 
-void sortByMedians(std::span<std::uint32_t> order, std::span<const glm::vec3> positions,
-                   std::size_t piece) {
-  std::vector<std::span<std::uint32_t>> parts{order};
+std::vector<std::uint32_t> sortedByMedians(std::span<const glm::vec3> positions,
+                                           std::size_t piece) {
+  std::vector<Placed> points(positions.size());
+  for (std::uint32_t i = 0; i < points.size(); ++i) points[i] = {positions[i], i};
+  std::vector<std::span<Placed>> parts{points};
   for (std::size_t level = 0; level < kTopLevels; ++level) {
-    std::vector<std::span<std::uint32_t>> halves(2 * parts.size());
+    std::vector<std::span<Placed>> halves(2 * parts.size());
     parallelFor(parts.size(), 1, [&](std::size_t p) {
-      const std::size_t middle = parts[p].size() <= piece ? 0 : halve(parts[p], positions);
+      const std::size_t middle = parts[p].size() <= piece ? 0 : halve(parts[p]);
       halves[2 * p] = parts[p].first(middle);
       halves[2 * p + 1] = parts[p].subspan(middle);
     });
     parts = std::move(halves);
   }
-  parallelFor(parts.size(), 1, [&](std::size_t p) { halveDownTo(parts[p], positions, piece); });
+  parallelFor(parts.size(), 1, [&](std::size_t p) { halveDownTo(parts[p], piece); });
+  std::vector<std::uint32_t> order(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) order[i] = points[i].number;
+  return order;
 }
 
 SurfelTree::SurfelTree(std::span<const Surfel> surfels) {
@@ -77,11 +86,9 @@ SurfelTree::SurfelTree(std::span<const Surfel> surfels) {
   if (!(longest > 0.0f)) longest = std::sqrt(surfels[used[0]].area);
   scale_ = 1.0f / longest;
 
-  std::vector<std::uint32_t> order(count_);
-  std::iota(order.begin(), order.end(), 0u);
   std::size_t parts = 1;
   while ((count_ + parts - 1) / parts > kPiece) parts *= 2, ++levels_;
-  sortByMedians(order, positions, kPiece);
+  const std::vector<std::uint32_t> order = sortedByMedians(positions, kPiece);
   positions_.resize(count_);
   half_areas_.resize(count_);
   extents_.resize(count_);

@@ -11,11 +11,10 @@
 
 namespace verdure {
 
-/// Halves `order[begin, end)` again and again at the median of its positions' longest side, down
-/// to pieces of at most `piece`; neighbours in space become neighbours in order. The same for any
-/// number of threads.
-void sortByMedians(std::span<std::uint32_t> order, std::span<const glm::vec3> positions,
-                   std::size_t piece);
+/// Numbers of the positions, halved again and again at the median of their longest side, down to
+/// pieces of at most `piece`; neighbours in space are neighbours in order. The same for any number
+/// of threads.
+std::vector<std::uint32_t> sortedByMedians(std::span<const glm::vec3> positions, std::size_t piece);
 
 /// A balanced tree over surfels, halved at the median of the longest side. Coordinates and areas
 /// are relative to its own origin and scale, so that nothing overflows whatever the unit.

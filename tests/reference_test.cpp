@@ -80,6 +80,7 @@ ReferenceOptions options(const Camera& camera, int width, int height, int sample
   o.width = width;
   o.height = height;
   o.samples = samples;
+  o.gloss = false;
   return o;
 }
 
@@ -135,21 +136,30 @@ Plant crowdOfWhite() {
   return pieces.plant;
 }
 
-TEST(Reference, SeesNothingInAWhiteFurnace) {
+void expectNothingInAWhiteFurnace(bool gloss, float tolerance) {
   const Plant plant = crowdOfWhite();
   ReferenceOptions o = options({{0.5f, 2.0f, 5.0f}, {0, 1, 0}, 0.8f}, 24, 18, 256);
   o.bounces = 4096;
+  o.gloss = gloss;
   const ReferencePicture picture =
       renderReference(sceneOf(plant), skyAlone(glm::vec3(1.0f), glm::vec3(1.0f)), o);
   for (std::size_t i = 0; i < picture.image.rgb.size(); ++i) {
     const glm::vec3 c = picture.image.rgb[i];
-    EXPECT_NEAR(c.x, 1.0f, 6.0f * picture.standard_error[i] + 1e-5f) << i;
-    EXPECT_NEAR(c.y, 1.0f, 6.0f * picture.standard_error[i] + 1e-5f) << i;
-    EXPECT_LE(c.z, 1.0f + 6.0f * picture.standard_error[i] + 1e-5f) << i;
+    EXPECT_NEAR(c.x, 1.0f, 6.0f * picture.standard_error[i] + tolerance) << i;
+    EXPECT_NEAR(c.y, 1.0f, 6.0f * picture.standard_error[i] + tolerance) << i;
+    EXPECT_LE(c.z, 1.0f + 6.0f * picture.standard_error[i] + tolerance) << i;
   }
   const glm::dvec3 mean = meanOf(picture.image);
-  EXPECT_NEAR(mean.x, 1.0, 5.0 * errorOfMean(picture) + 1e-5);
+  EXPECT_NEAR(mean.x, 1.0, 5.0 * errorOfMean(picture) + double{tolerance});
   EXPECT_LT(mean.z, 0.99);  // blue is taken by leaves
+}
+
+TEST(Reference, SeesNothingInAWhiteFurnace) {
+  expectNothingInAWhiteFurnace(false, 1e-5f);
+}
+
+TEST(Reference, SeesNothingInAWhiteFurnaceWithGloss) {
+  expectNothingInAWhiteFurnace(true, 3e-4f);  // the table of what is reflected
 }
 
 TEST(Reference, GetsNoBrighterThanItsLight) {
@@ -415,6 +425,71 @@ TEST(Scatterer, LosesAndGainsNothing) {
     }
   }
   EXPECT_FALSE(Scatterer{}.sample(random));  // black
+}
+
+glm::vec3 onSphere(int i, int count) {  // a Fibonacci lattice
+  const double y = 1.0 - (2.0 * i + 1.0) / count, turn = 2.0 * M_PI * 0.6180339887498949 * i;
+  const double ring = std::sqrt(1.0 - y * y);
+  return {static_cast<float>(ring * std::cos(turn)), static_cast<float>(y),
+          static_cast<float>(ring * std::sin(turn))};
+}
+
+TEST(Scatterer, GlossTakesWhatItReflects) {
+  Random random(9);
+  for (const float width : {0.2f, 0.41f, 0.82f}) {
+    const Gloss gloss(0.04f, width);
+    for (int trial = 0; trial < 8; ++trial) {
+      const auto unit = [&random] {
+        return glm::normalize(glm::vec3(random.vary(1), random.vary(1), random.vary(1)));
+      };
+      Scatterer s{unit(), unit(), glm::vec3(0.7f, 0.5f, 0.2f), glm::vec3(0.3f, 0.1f, 0.2f),
+                  &gloss, unit()};
+      if (glm::dot(s.out, s.side) < 0.0f) s.out = -s.out;
+      const bool straight = glm::dot(s.normal, s.out) > 0.0f;
+      const double reflected = gloss.reflected(glm::dot(straight ? s.normal : s.side, s.out));
+      constexpr int kPoints = 400000;
+      glm::dvec3 out(0.0);
+      double density = 0.0;
+      for (int i = 0; i < kPoints; ++i) {
+        const glm::vec3 d = onSphere(i, kPoints);
+        out += glm::dvec3(s.value(d)) * (4.0 * M_PI / kPoints);
+        density += double{s.density(d)} * (4.0 * M_PI / kPoints);
+      }
+      EXPECT_LE(density, 1.002);  // what is missing goes into the surface
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(out[c],
+                    reflected + (1.0 - reflected) * double{s.reflectance[c] + s.transmittance[c]},
+                    3e-3)
+            << width;
+      // The mean weight is what leaves.
+      constexpr int kSamples = 40000;
+      glm::dvec3 sum(0.0);
+      for (int i = 0; i < kSamples; ++i)
+        if (const auto sample = s.sample(random)) sum += glm::dvec3(sample->weight);
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c] / kSamples, out[c], 0.015) << width;
+    }
+  }
+}
+
+TEST(Gloss, IsTheSameBothWaysAndBrightestAtTheMirror) {
+  const Gloss gloss(0.04f, 0.41f);
+  const glm::vec3 n(0, 1, 0);
+  Random random(3);
+  for (int i = 0; i < 200; ++i) {
+    const auto above = [&random] {
+      glm::vec3 v =
+          glm::normalize(glm::vec3(random.vary(1), random.uniform(0.02f, 1), random.vary(1)));
+      return v;
+    };
+    const glm::vec3 a = above(), b = above();
+    EXPECT_NEAR(gloss.value(n, a, b) / b.y, gloss.value(n, b, a) / a.y, 1e-3f / (a.y * b.y));
+    EXPECT_NEAR(gloss.passed(a.y, b.y), gloss.passed(b.y, a.y), 1e-6f);
+  }
+  // Squarely: F D / 4, which is k_s / pi of the renderer's highlight.
+  EXPECT_NEAR(gloss.value(n, n, n), 0.04f / (4.0f * kPi * 0.41f * 0.41f), 1e-5f);
+  EXPECT_EQ(gloss.value(n, n, -n), 0.0f);
+  // Smooth and looked at squarely it reflects what its facets do.
+  EXPECT_NEAR(Gloss(0.04f, 0.05f).reflected(1.0f), 0.04f, 2e-3f);
 }
 
 TEST(SkySampler, DrawsWhatItsDensitySays) {

@@ -31,6 +31,7 @@ struct ReferenceOptions {
       32;  ///< surfaces that light may scatter at on its way, >= 1; 1 = direct light alone
   std::uint32_t seed = 1;
   bool normal_maps = true;
+  bool gloss = true;  ///< highlights of leaves and wood
   LightSearch search = LightSearch::kBoth;
   /// Called from the calling thread after each round with the share done in [0, 1].
   std::function<void(double share)> progress;
@@ -50,10 +51,12 @@ struct ReferencePicture {
 /// what the eye sees of it, haze. Plants' baked light and transfer vectors play no part.
 ///
 /// Wood and ground reflect diffusely, leaves on both sides, and transmit diffusely
-/// (shared/leaf.h); there are no highlights. Shading normals may point away from the triangle's
-/// side: the part of a lobe that would go through the surface is mirrored back, so that as much
-/// light leaves as arrives. The sun is seen, and its disk shines, only above the horizon; where an
-/// eye without ground looks below it into a black sky, it sees the horizon, as in the renderer.
+/// (shared/leaf.h). Leaves and wood have the gloss of a clear rough surface over it (Cook and
+/// Torrance 1982), which takes from the light below what it reflects. Shading normals may point
+/// away from the triangle's side: the part of a lobe that would go through the surface is mirrored
+/// back, so that as much light leaves as arrives. The sun is seen, and its disk shines, only above
+/// the horizon; where an eye without ground looks below it into a black sky, it sees the horizon,
+/// as in the renderer.
 ///
 /// A picture depends on the scene, the options and the number of samples, not on threads or time.
 /// Throws Error for options out of range and what RayScene refuses.

@@ -123,7 +123,8 @@ FieldCheck checkFields(const Subject& subject) {
     const VertexId id = vertices[i];
     check.traced.push_back(traced[i].share);
     check.metaball.push_back(subject.metaball.light.meshes[id.mesh].ambient[id.vertex]);
-    check.depth.push_back(opennessOf(sums[first_vertex[id.mesh] + id.vertex], DepthModels().leaf));
+    check.depth.push_back(
+        opennessOf(sums[first_vertex[id.mesh] + id.vertex], subject.depth.report.models.leaf));
   }
   check.of_metaball = agreementOf(check.metaball, check.traced);
   check.of_depth = agreementOf(check.depth, check.traced);

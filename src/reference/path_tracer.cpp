@@ -77,7 +77,7 @@ class PathTracer {
   PathTracer(const Scene& scene, const Daylight& lights, const ReferenceOptions& options)
       : options_(options),
         rays_(scene),
-        surfaces_(scene, rays_, options.normal_maps),
+        surfaces_(scene, rays_, options.normal_maps, options.gloss),
         sky_(skyOf(lights)),
         sky_sampler_(sky_),
         sun_(lights.sun),

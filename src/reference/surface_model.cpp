@@ -33,11 +33,33 @@ glm::vec3 cosineDirection(const glm::vec3& axis, Random& random) {
 
 }  // namespace
 
-float Scatterer::lobe(const glm::vec3& direction, bool reflected) const {
-  const glm::vec3 axis = reflected ? normal : -normal;
-  return (std::max(glm::dot(axis, direction), 0.0f) +
-          std::max(glm::dot(axis, mirrored(direction, side)), 0.0f)) /
-         glm::pi<float>();
+template <class Lobe>
+float Scatterer::mirroredSum(const glm::vec3& direction, const glm::vec3& axis,
+                             const Lobe& lobe) const {
+  const glm::vec3 other = mirrored(direction, side);
+  const float here = glm::dot(axis, direction), there = glm::dot(axis, other);
+  return (here > 0.0f ? lobe(direction, here) : 0.0f) + (there > 0.0f ? lobe(other, there) : 0.0f);
+}
+
+float Scatterer::diffuse(const glm::vec3& direction, bool reflected) const {
+  const float seen = glm::dot(facing(), out);
+  return mirroredSum(direction, reflected ? normal : -normal, [&](const glm::vec3&, float cosine) {
+    return (gloss != nullptr ? gloss->passed(seen, cosine) : 1.0f) * cosine / glm::pi<float>();
+  });
+}
+
+float Scatterer::highlight(const glm::vec3& direction) const {
+  if (gloss == nullptr || !(glm::dot(direction, side) > 0.0f)) return 0.0f;
+  const glm::vec3& n = facing();
+  return mirroredSum(direction, n,
+                     [&](const glm::vec3& d, float) { return gloss->value(n, out, d); });
+}
+
+float Scatterer::glossShare() const {
+  if (gloss == nullptr) return 0.0f;
+  const float reflected = gloss->reflected(glm::dot(facing(), out));
+  const float below = (1.0f - reflected) * (meanOf(reflectance) + meanOf(transmittance));
+  return reflected / (reflected + below);
 }
 
 float Scatterer::reflectedShare() const {
@@ -47,27 +69,50 @@ float Scatterer::reflectedShare() const {
 
 glm::vec3 Scatterer::value(const glm::vec3& direction) const {
   const bool reflected = glm::dot(direction, side) > 0.0f;
-  return (reflected ? reflectance : transmittance) * lobe(direction, reflected);
+  return (reflected ? reflectance : transmittance) * diffuse(direction, reflected) +
+         highlight(direction);
 }
 
 float Scatterer::density(const glm::vec3& direction) const {
   const bool reflected = glm::dot(direction, side) > 0.0f;
-  const float share = reflectedShare();
-  return (reflected ? share : 1.0f - share) * lobe(direction, reflected);
+  const float share = reflectedShare(), glossy = glossShare();
+  const float spread =
+      mirroredSum(direction, reflected ? normal : -normal,
+                  [](const glm::vec3&, float cosine) { return cosine / glm::pi<float>(); });
+  float density = (1.0f - glossy) * (reflected ? share : 1.0f - share) * spread;
+  if (glossy > 0.0f && reflected) {
+    const glm::vec3& n = facing();
+    density += glossy * mirroredSum(direction, n, [&](const glm::vec3& d, float) {
+                 return gloss->density(n, out, d);
+               });
+  }
+  return density;
 }
 
 std::optional<Scatterer::Sample> Scatterer::sample(Random& random) const {
-  const float share = reflectedShare();
-  const bool reflected = random.uniform() < share;
-  const glm::vec3 color = reflected ? reflectance : transmittance;
-  if (!(meanOf(color) > 0.0f)) return std::nullopt;
-  glm::vec3 direction = cosineDirection(reflected ? normal : -normal, random);
-  if ((glm::dot(direction, side) > 0.0f) != reflected) direction = mirrored(direction, side);
-  return Sample{direction, color / (reflected ? share : 1.0f - share)};
+  const float share = reflectedShare(), glossy = glossShare();
+  glm::vec3 direction;
+  if (glossy > 0.0f && random.uniform() < glossy) {
+    direction = gloss->sample(facing(), out, random);
+    if (!(glm::dot(direction, facing()) > 0.0f)) return std::nullopt;
+    if (!(glm::dot(direction, side) > 0.0f)) direction = mirrored(direction, side);
+  } else {
+    const bool reflected = random.uniform() < share;
+    if (!(meanOf(reflected ? reflectance : transmittance) > 0.0f)) return std::nullopt;
+    direction = cosineDirection(reflected ? normal : -normal, random);
+    if ((glm::dot(direction, side) > 0.0f) != reflected) direction = mirrored(direction, side);
+  }
+  const float chance = density(direction);
+  if (!(chance > 0.0f)) return std::nullopt;
+  return Sample{direction, value(direction) / chance};
 }
 
-SurfaceModel::SurfaceModel(const Scene& scene, const RayScene& rays, bool normal_maps)
+SurfaceModel::SurfaceModel(const Scene& scene, const RayScene& rays, bool normal_maps, bool gloss)
     : scene_(scene), rays_(rays) {
+  if (gloss) {
+    leaf_gloss_.emplace(look::kFacetReflectance, look::kLeafGlossWidth);
+    wood_gloss_.emplace(look::kFacetReflectance, look::kWoodGlossWidth);
+  }
   if (scene.ground) {
     ground_.image = makeGroundTexture(look::kGroundTextureSize);
     ground_noise_.image = makeGroundNoise(look::kGroundNoiseSize);
@@ -126,6 +171,9 @@ SurfaceModel::Point SurfaceModel::at(const RayHit& hit, const Ray& ray) const {
   scatterer.side = facing * surface.normal;
   scatterer.normal = mappedNormal(hit, surface.uv, facing * surface.vertex_normal);
   scatterer.reflectance = glm::clamp(surface.reflectance, 0.0f, 1.0f);
+  scatterer.out = -glm::normalize(ray.direction);
+  if (const std::optional<Gloss>& gloss = surface.foliage ? leaf_gloss_ : wood_gloss_)
+    scatterer.gloss = &*gloss;
   if (surface.foliage) scatterer.transmittance = shared::leafTransmittance(scatterer.reflectance);
   return point;
 }

@@ -187,11 +187,33 @@ TEST_F(HdrRender, AWhiteFurnaceIsWhite) {
       for (const bool transmission : {false, true}) {
         view.terms.normal = normal;
         view.terms.ambient_source = source;
-        view.terms.transmission = transmission;
+        view.terms.transmission = view.terms.gloss = transmission;
         const HdrImage image = renderer().render(view).hdr;
         for (int y = 0; y < view.height / 2; ++y)  // above the horizon, quad or sky
           for (int x = 0; x < view.width; ++x) expectPixel(image, x, y, glm::vec3(1.0f));
       }
+}
+
+TEST_F(HdrRender, BlackLeavesShowTheirGlossAlone) {
+  const Plant quad = whiteQuad(glm::vec4(0, 0, 0, 1));
+  const float k_a = 0.6f;
+  const CrownLight light = uniformLight(quad, {0, 0, 1}, k_a);
+  setItem(quad, &light);
+  View view = quadView();
+  view.daylight = {uniformSky(glm::vec3(1.0f, 2.0f, 3.0f), glm::vec3(1.0f, 2.0f, 3.0f)), {}};
+  view.terms.gloss = true;
+  for (const AmbientSource source :
+       {AmbientSource::kConstant, AmbientSource::kSky, AmbientSource::kBaked})
+    for (const float aside : {0.0f, 3.0f, 9.0f}) {
+      view.terms.ambient_source = source;
+      view.camera.eye = {aside, 0.0f, 5.0f};
+      const float mirrored =
+          shared::glossReflected(look::kLeafGlossWidth, -pixelRay(view, 32, 24).z);
+      expectPixel(
+          renderer().render(view).hdr, 32, 24,
+          glm::vec3(1.0f, 2.0f, 3.0f) * mirrored * (source == AmbientSource::kBaked ? k_a : 1.0f),
+          2e-3f);
+    }
 }
 
 TEST_F(HdrRender, TransferVectorsOfOpenLeavesAreTheSkysLight) {
@@ -199,7 +221,7 @@ TEST_F(HdrRender, TransferVectorsOfOpenLeavesAreTheSkysLight) {
   const Plant quad = whiteQuad(glm::vec4(green, 1.0f));
   View view = quadView();
   view.terms = presetTerms("transfer");
-  view.terms.diffuse = view.terms.specular = view.terms.shadow = false;
+  view.terms.diffuse = view.terms.specular = view.terms.shadow = view.terms.gloss = false;
   for (const int bands : {2, 3, 5, 6}) {
     const PlantTransfer transfer = quadTransfer(quad, bands, {0, 0, 1});
     Scene scene = itemScene(quad, nullptr);
@@ -265,7 +287,7 @@ TEST_F(HdrRender, BouncedVectorsCarryTheSun) {
   View view = quadView();
   view.daylight.sky = nullptr;
   view.terms = presetTerms("transfer");
-  view.terms.diffuse = view.terms.specular = view.terms.transmission = false;
+  view.terms.diffuse = view.terms.specular = view.terms.transmission = view.terms.gloss = false;
   setSun(view, 0.3f, 0.8f, {3.0f, 2.0f, 1.0f});
   // Twice: light from above, mirrored.
   expectPixel(renderer().render(view).hdr, 32, 24,

@@ -12,6 +12,7 @@
 #include "render/scene.h"
 #include "scene/camera.h"
 #include "shared/color.h"
+#include "shared/gloss.h"
 #include "shared/illumination.h"
 #include "shared/tone.h"
 #include "test_plants.h"
@@ -153,7 +154,8 @@ inline glm::vec3 expectedLeafColor(const View& view, const glm::vec3& color, flo
   const glm::vec3 l = view.daylight.sun.direction;
   const glm::vec3 v = glm::normalize(view.camera.eye - point);
   return shared::illumination(view.daylight.sky->luminance({0, 1, 0}) * color * k, sunLight(view),
-                              1.0f, color * shared::diffuseFactor(normal, l), look::kLeafSpecular,
+                              1.0f, color * shared::diffuseFactor(normal, l),
+                              shared::highlightStrength(look::kLeafGlossWidth),
                               shared::specularFactor(normal, l, v, look::kLeafExponent));
 }
 

@@ -38,10 +38,13 @@ struct Terms {
   bool shadow = true;         ///< S_i from the shadow map
   bool textures = true;       ///< else a uniform matt colour of the material
   bool transmission = false;  ///< leaves show the light on their far side (shared/leaf.h)
+  /// Leaves and wood mirror the sky dimly; what they mirror is missing below (shared/gloss.h).
+  bool gloss = false;
 };
 
 /// Published combinations: "standard" (leaf normals, constant ambient), "expressive" (Luft: crown
-/// normals, baked ambient) and "transfer" (Habel: leaf normals, transfer vectors, transmission).
+/// normals, baked ambient) and "transfer" (Habel: leaf normals, transfer vectors, transmission; and
+/// gloss).
 /// Throws Error for an unknown name.
 Terms presetTerms(const std::string& name);
 const std::vector<std::string>& presetNames();

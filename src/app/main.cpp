@@ -206,7 +206,8 @@ int run(int argc, char** argv) {
   render_app->add_option("--light", render.light, "standard, expressive or transfer")
       ->capture_default_str();
   render_app->add_option("--terms", render.terms,
-                         "Only these terms: ambient,diffuse,specular,shadow,textures,transmission");
+                         "Only these terms: ambient,diffuse,specular,shadow,textures,transmission,"
+                         "gloss");
   addDaylightOptions(*render_app, render.daylight);
   addExposureOptions(*render_app, render.exposure);
   render_app

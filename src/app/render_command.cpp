@@ -19,7 +19,7 @@ Terms parseTerms(const RenderCommand& command) {
   Terms terms = presetTerms(command.light);
   if (command.terms.empty()) return terms;
   terms.ambient = terms.diffuse = terms.specular = terms.shadow = terms.textures =
-      terms.transmission = false;
+      terms.transmission = terms.gloss = false;
   std::size_t begin = 0;
   while (begin <= command.terms.size()) {
     const std::size_t end = std::min(command.terms.find(',', begin), command.terms.size());
@@ -30,10 +30,11 @@ Terms parseTerms(const RenderCommand& command) {
                        : name == "shadow"       ? &terms.shadow
                        : name == "textures"     ? &terms.textures
                        : name == "transmission" ? &terms.transmission
+                       : name == "gloss"        ? &terms.gloss
                                                 : nullptr;
     if (term == nullptr)
       throw Error("--terms", fmt::format("'{}' is unknown", name),
-                  "use ambient, diffuse, specular, shadow, textures, transmission");
+                  "use ambient, diffuse, specular, shadow, textures, transmission, gloss");
     *term = true;
     begin = end + 1;
   }

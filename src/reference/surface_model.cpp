@@ -7,6 +7,7 @@
 #include "scene/ground_texture.h"
 #include "scene/look.h"
 #include "scene/scene.h"
+#include "shared/gloss.h"
 #include "shared/ground.h"
 #include "shared/leaf.h"
 #include "shared/normal_map.h"
@@ -110,8 +111,8 @@ std::optional<Scatterer::Sample> Scatterer::sample(Random& random) const {
 SurfaceModel::SurfaceModel(const Scene& scene, const RayScene& rays, bool normal_maps, bool gloss)
     : scene_(scene), rays_(rays) {
   if (gloss) {
-    leaf_gloss_.emplace(look::kFacetReflectance, look::kLeafGlossWidth);
-    wood_gloss_.emplace(look::kFacetReflectance, look::kWoodGlossWidth);
+    leaf_gloss_.emplace(shared::facetReflectance(), look::kLeafGlossWidth);
+    wood_gloss_.emplace(shared::facetReflectance(), look::kWoodGlossWidth);
   }
   if (scene.ground) {
     ground_.image = makeGroundTexture(look::kGroundTextureSize);

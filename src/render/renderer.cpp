@@ -20,7 +20,8 @@ const std::vector<Preset>& presets() {
       {"transfer",
        {.normal = NormalSource::kLeaf,
         .ambient_source = AmbientSource::kTransfer,
-        .transmission = true}}};
+        .transmission = true,
+        .gloss = true}}};
   return all;
 }
 

@@ -195,7 +195,7 @@ class Packer {
     draw.uniforms.color = material.base_color;
     draw.uniforms.matt = glm::vec4(glm::vec3(material.base_color) * mean, 1.0f);
     draw.uniforms.surface = glm::vec4(cutoff, material.normal_scale,
-                                      draw.foliage ? look::kLeafSpecular : look::kWoodSpecular,
+                                      draw.foliage ? look::kLeafGlossWidth : look::kWoodGlossWidth,
                                       draw.foliage ? look::kLeafExponent : look::kWoodExponent);
   }
 

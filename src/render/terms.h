@@ -23,7 +23,8 @@ inline gpu::Constants termConstants(const Terms& terms, const DrawKind& kind) {
   return {terms.ambient,    terms.diffuse,   terms.specular,
           terms.shadow,     terms.textures,  static_cast<std::uint32_t>(kind.ambient_source),
           kind.formula_sky, kind.background, kind.transmission,
-          kind.flip_normal, kind.alpha_test, kind.normal_map};
+          kind.flip_normal, kind.alpha_test, kind.normal_map,
+          terms.gloss};
 }
 
 }  // namespace verdure

@@ -13,9 +13,7 @@ inline constexpr float kGroundTile_m = 2.4f;
 inline constexpr float kHazeHalf = 22.0f;
 inline constexpr float kHazeHalfLeast_m = 80.0f;
 
-// Gloss of leaves and of wood: a facet's reflectance (a refractive index of 1.5) and GGX's alpha,
-// so that their highlights are as bright as k_s of the renderer's, which is facets / (4 alpha^2).
-inline constexpr float kFacetReflectance = 0.04f;
+// Gloss of leaves and of wood: GGX's alpha, see shared/gloss.h. Leaves are waxy, bark is dull.
 inline constexpr float kLeafGlossWidth = 0.41f;
 inline constexpr float kWoodGlossWidth = 0.82f;
 

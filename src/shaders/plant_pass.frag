@@ -1,10 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame_set.glsl"
+#include "shared/gloss.h"
 #include "shared/illumination.h"
 #include "shared/leaf.h"
 #include "shared/normal_map.h"
 #include "shared/sh.h"
+#include "shared/tone.h"
 #include "terms.glsl"
 #include "sun_visibility.glsl"
 
@@ -42,6 +44,17 @@ int coverageMask(float alpha, float cutoff) {
   int mask = (1 << min(count, 4)) - 1;
   int turn = int(random & 3u);
   return ((mask << turn) | (mask >> (4 - turn))) & 15;
+}
+
+/// Mean luminance of sky and ground that a wide gloss mirrors towards r. What stands around takes
+/// the share of it that it takes of the light `near` on the surface.
+vec3 mirroredLight(vec3 r, vec3 n, vec3 near, float k_a) {
+  if (kAmbientSource == kConstant) return frame.open_sky.rgb;
+  vec3 open = shIrradiance(r, frame.open_light);
+  if (kAmbientSource == kSky) return open;
+  if (kAmbientSource == kBaked) return open * k_a;
+  float unshadowed = luminanceOf(shIrradiance(n, frame.open_light));
+  return open * (unshadowed > 0.0 ? min(luminanceOf(near) / unshadowed, 1.0) : 0.0);
 }
 
 void main() {
@@ -92,13 +105,19 @@ void main() {
     ambient += beyond * k_t;
     if (kDiffuse) diffuse += k_t * diffuseFactor(-n, l);
   }
+  if (kGloss) {
+    float mirrored = glossReflected(draw.surface.z, max(dot(n, v), 0.0));
+    ambient *= 1.0 - mirrored;
+    diffuse *= 1.0 - mirrored;
+    if (kAmbient) ambient += mirrored * mirroredLight(reflect(-v, n), n, near, in_normal.w);
+  }
   float specular = kSpecular ? specularFactor(n, l, v, draw.surface.w) : 0.0;
   float visibility = 1.0;
   if (kShadow && (diffuse != vec3(0.0) || specular > 0.0)) {
     vec3 face = cross(p_x, p_y);
     visibility = sunVisibility(position, dot(face, face) > 0.0 ? normalize(face) : n);
   }
-  vec3 lit = illumination(ambient, frame.sun_light.rgb, visibility, diffuse, draw.surface.z,
-                          specular);
+  vec3 lit = illumination(ambient, frame.sun_light.rgb, visibility, diffuse,
+                          highlightStrength(draw.surface.z), specular);
   out_color = vec4(clamp(lit, vec3(0.0), vec3(65000.0)), 1.0);
 }

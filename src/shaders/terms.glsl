@@ -12,5 +12,6 @@ layout(constant_id = 8) const bool kTransmission = false;
 layout(constant_id = 9) const bool kFlipNormal = false;
 layout(constant_id = 10) const bool kAlphaTest = false;
 layout(constant_id = 11) const bool kNormalMap = false;
+layout(constant_id = 12) const bool kGloss = false;
 // AmbientSource of verdure/render.h.
 const int kConstant = 0, kSky = 1, kBaked = 2, kTransfer = 3;

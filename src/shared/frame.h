@@ -33,7 +33,7 @@ SHARED_SIZE(FrameUniforms, 560);
 struct DrawUniforms {
   vec4 color;    ///< linear RGB; w = alpha, both multiply the texture
   vec4 matt;     ///< colour without textures: the material's mean
-  vec4 surface;  ///< alpha cutoff of the texture, normal map's scale, k_s, exponent
+  vec4 surface;  ///< alpha cutoff of the texture, normal map's scale, width of the gloss, exponent
 };
 SHARED_SIZE(DrawUniforms, 48);
 

@@ -7,6 +7,7 @@
 #include "render_fixture.h"
 #include "shared/leaf.h"
 #include "shared/sky.h"
+#include "verdure/reference.h"
 
 // Light in physical units, and the way from it to the display.
 
@@ -474,6 +475,62 @@ TEST_F(HdrRender, NightFallsWithoutNonsense) {
       }
     EXPECT_LE(frame.average_luminance, before) << elevation;
     before = frame.average_luminance;
+  }
+}
+
+/// Looks over open ground from `height`, the horizon a third of a field of view above the middle.
+View horizonView(float height, float azimuth, float fov) {
+  View view = smallView(32, 120);
+  view.bloom = 0.0f;
+  view.terms = presetTerms("standard");
+  const glm::vec3 eye(0.0f, height, 0.0f);
+  view.camera = {eye, eye + 15.0f * directionOf(azimuth, -0.113f * fov), fov};
+  return view;
+}
+
+TEST_F(HdrRender, NoRowStandsOutAlongTheHorizon) {
+  renderer().setScene(Scene{.items = {}, .ground = true});
+  for (const float fov : {0.02f, 0.2f, 0.6f, 1.2f})
+    for (const float sun : {-0.02f, 0.005f, 0.1f, 0.9f})
+      for (const float height : {0.3f, 1.7f, 20.0f})
+        for (const float azimuth : {0.36f, 1.8f, 3.4f}) {  // towards the sun, aside, away from it
+          View view = horizonView(height, azimuth, fov);
+          view.terms.textures = false;
+          view.daylight = preethamDaylight(3.0f, directionOf(0.3f, sun));
+          view.daylight.sun.luminance = glm::vec3(0.0f);
+          const HdrImage image = renderer().render(view).hdr;
+          const float pixel = 2.0f * std::tan(0.5f * fov) / static_cast<float>(view.height);
+          for (const int x : {2, 20})
+            for (int y = 1; y + 1 < view.height; ++y) {
+              if (std::abs(pixelRay(view, x, y).y) > 4.0f * pixel) continue;
+              const float above = luminanceAt(image, x, y - 1), here = luminanceAt(image, x, y),
+                          below = luminanceAt(image, x, y + 1);
+              EXPECT_LE(here, 1.03f * std::max(above, below));
+              EXPECT_GE(here, 0.97f * std::min(above, below))
+                  << "row " << y << ", column " << x << ", field of view " << fov << ", sun " << sun
+                  << ", eye " << height << " m, azimuth " << azimuth;
+            }
+        }
+}
+
+TEST_F(HdrRender, TheHorizonIsTheReferences) {
+  Scene scene{.items = {}, .ground = true};
+  renderer().setScene(scene);
+  // A sky that falls steeply around a sun on the horizon, through a long lens.
+  View view = horizonView(1.7f, 0.3f, 0.02f);
+  view.daylight = {cieSky(15, directionOf(0.3f, 0.002f)), {}};
+  ReferenceOptions options;
+  options.width = view.width;
+  options.height = view.height;
+  options.camera = view.camera;
+  options.samples = 64;
+  const HdrImage frame = renderer().render(view).hdr;
+  const HdrImage truth = renderReference(scene, view.daylight, options).image;
+  for (int y = 0; y < view.height; ++y) {
+    const float height = pixelRay(view, 16, y).y;
+    if (height < -0.002f) break;  // the grass is seen, and the path tracer's noise
+    const bool sky = height > 2e-4f;
+    for (const int x : {2, 16, 30}) expectPixel(frame, x, y, truth.at(x, y), sky ? 0.002f : 0.02f);
   }
 }
 

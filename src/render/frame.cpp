@@ -178,8 +178,8 @@ shared::FrameUniforms FrameDrawer::makeUniforms(const GpuScene& scene, const Vie
   const CameraRays rays = cameraRays(view.camera, aspect);
   u.clip_from_world = clipFromWorld(view.camera, aspect);
   u.eye = glm::vec4(rays.eye, units);
-  u.ray_right = glm::vec4(rays.right, 0.0f);
-  u.ray_down = glm::vec4(rays.down, 0.0f);
+  u.ray_right = glm::vec4(rays.right, 2.0f / static_cast<float>(view.width));
+  u.ray_down = glm::vec4(rays.down, 2.0f / static_cast<float>(view.height));
   u.ray_forward = glm::vec4(rays.forward, 0.0f);
   const ShadowFit fit = fitShadow(scene.bounds(), light.to_sun, view.shadow_map_size);
   u.shadow_from_world = fit.shadow_from_world;

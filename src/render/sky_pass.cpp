@@ -4,7 +4,7 @@ namespace verdure {
 namespace {
 
 constexpr std::uint32_t kVertex[] = {
-#include "shaders/sky_pass.vert.inc"
+#include "shaders/fullscreen.vert.inc"
 };
 constexpr std::uint32_t kFragment[] = {
 #include "shaders/sky_pass.frag.inc"

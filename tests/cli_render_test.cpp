@@ -78,6 +78,7 @@ TEST_F(CommandLineRender, OptionsOfTheView) {
   EXPECT_GT(difference(plain, picture(tree, {"--key", "0.36"})), 5.0);
   EXPECT_GT(difference(plain, picture(tree, {"--exposure", "12"})), 5.0);
   EXPECT_GT(difference(plain, picture(tree, {"--white", "1"})), 0.5);
+  EXPECT_EQ(difference(plain, picture(tree, {"--white", "auto"})), 0.0);
   EXPECT_GT(difference(plain, picture(tree, {"--bloom", "0.5"})), 0.5);
   EXPECT_GT(difference(plain, picture(tree, {"--terms",
                                              "ambient,diffuse,specular,shadow,textures,"
@@ -172,6 +173,7 @@ TEST_F(CommandLineRender, Refuses) {
   refused({"--exposure", "99"}, {"--exposure: 99 is out of range"});
   refused({"--key", "0"}, {"--key: 0 is out of range"});
   refused({"--white", "-1"}, {"--white: -1 is out of range"});
+  refused({"--white", "bright"}, {"--white: 'bright' is no number"});
   refused({"--bloom", "2"}, {"--bloom: 2 is out of range"});
   refused({"--light", "transfer"}, {"no transfer vectors", "bake --transfer"});
   refused({"--sky", "cie:16"}, {"--sky: 'cie:16' is no CIE standard sky"});

@@ -88,7 +88,7 @@ Daylight parseDaylight(const DaylightOptions& options);
 struct ExposureOptions {
   std::string exposure = "auto";
   double key = 0.3;
-  double white = 2.0;
+  std::string white = "auto";
   double bloom = 0.01;
 };
 Exposure parseExposure(const ExposureOptions& options);

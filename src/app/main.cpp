@@ -114,7 +114,8 @@ void addExposureOptions(CLI::App& command, ExposureOptions& exposure) {
   command.add_option("--key", exposure.key, "Brightness of the average, 0.09 dark to 0.36 light")
       ->capture_default_str();
   command
-      .add_option("--white", exposure.white, "Luminance of pure white, in averages times the key")
+      .add_option("--white", exposure.white,
+                  "auto, or the luminance of pure white in averages times the key")
       ->capture_default_str();
 }
 

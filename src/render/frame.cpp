@@ -129,8 +129,8 @@ void FrameDrawer::checkView(const View& view) const {
   demand(view.sky_bands >= 2 && view.sky_bands <= kMaxBands, "sky_bands", "choose 2 to 7");
   demand(view.exposure.key > 0.0f && std::isfinite(view.exposure.key), "exposure.key",
          "choose a number above 0");
-  demand(view.exposure.white > 0.0f && std::isfinite(view.exposure.white), "exposure.white",
-         "choose a number above 0");
+  const float white = view.exposure.white.value_or(1.0f);
+  demand(white > 0.0f && std::isfinite(white), "exposure.white", "choose a number above 0");
   demand(!view.exposure.ev || std::abs(*view.exposure.ev) <= 40.0f, "exposure.ev",
          "choose -40 to 40");
   demand(view.bloom >= 0.0f && view.bloom <= 1.0f, "bloom", "choose 0 to 1");
@@ -243,7 +243,8 @@ void FrameDrawer::recordTone(const vk::raii::CommandBuffer& commands, const View
                     gpu::Use::kFragmentSampled);
   gpu::imageBarrier(commands, *targets_->resolved.image, kColorAspect, gpu::Use::kColorAttachment,
                     gpu::Use::kComputeSampled);
-  if (!view.exposure.ev) exposure_pass_.record(commands, look::kLeastLuminance * units);
+  if (!view.exposure.ev || !view.exposure.white)
+    exposure_pass_.record(commands, look::kLeastLuminance * units);
   gpu::imageBarrier(commands, *targets_->resolved.image, kColorAspect, gpu::Use::kComputeSampled,
                     gpu::Use::kFragmentSampled);
   bloom_pass_.record(commands, view.bloom > 0.0f);
@@ -251,7 +252,7 @@ void FrameDrawer::recordTone(const vk::raii::CommandBuffer& commands, const View
       commands, targets_->picture,
       {.background = glm::vec4(view.background.value_or(glm::vec3(0.0f)), 0.0f),
        .key = view.exposure.key,
-       .white = view.exposure.white,
+       .white = view.exposure.white.value_or(0.0f),
        .average = view.exposure.ev ? shared::meteredLuminance(*view.exposure.ev) * units : 0.0f,
        .bloom = view.bloom});
 }
@@ -292,8 +293,13 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
   Frame frame;
   frame.image = targets_->readPicture();
   if (view.hdr) frame.hdr = targets_->readHdr(units);
-  frame.average_luminance = view.exposure.ev ? shared::meteredLuminance(*view.exposure.ev)
-                                             : exposure_pass_.average() / units;
+  const ExposurePass::Measured measured = exposure_pass_.measured();
+  frame.average_luminance =
+      view.exposure.ev ? shared::meteredLuminance(*view.exposure.ev) : measured.average / units;
+  const float exposure =
+      frame.average_luminance > 0.0f ? view.exposure.key / frame.average_luminance : 0.0f;
+  frame.white =
+      view.exposure.white.value_or(shared::automaticWhite(measured.bright / units * exposure));
   frame.times.shadow_ms = timers_.milliseconds(0, 1);
   frame.times.color_ms = timers_.milliseconds(1, 2);
   frame.times.tone_ms = timers_.milliseconds(2, 3);

@@ -41,7 +41,7 @@ SHARED_SIZE(DrawUniforms, 48);
 struct ToneUniforms {
   vec4 background;  ///< linear display RGB
   float key;        ///< scaled luminance of the average
-  float white;      ///< smallest scaled luminance that is pure white
+  float white;      ///< smallest scaled luminance that is pure white; 0 = automaticWhite()
   float average;    ///< frame units; 0 = as measured
   float bloom;      ///< share of light that is spread
 };

@@ -294,9 +294,10 @@ int run(int argc, char** argv) {
   luft_app->add_option("--size", figures.size, "WxH of each picture")->capture_default_str();
   addDeviceOptions(*luft_app, figures.device);
   SkyReport sky_figures;
-  CLI::App* habel_app = figures_app->add_subcommand("sky", "Habel 2009: 5.3 to 5.5");
+  CLI::App* habel_app = figures_app->add_subcommand("sky", "Habel 2009: 5.3 to 5.7");
   habel_app->add_option("-o,--output", sky_figures.folder, "Folder to write")
       ->capture_default_str();
+  addDeviceOptions(*habel_app, sky_figures.scenes.emplace());
 
   FidelityCommand fidelity;
   CLI::App* report_app = app.add_subcommand("report", "Measure what verdure claims");

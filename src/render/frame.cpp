@@ -232,8 +232,7 @@ void FrameDrawer::recordColor(const vk::raii::CommandBuffer& commands, const Gpu
                                        .maxDepth = 1.0f});
   commands.setScissor(0, area);
   plant_pass_.record(commands, layout_, *frame_set_, scene, view.terms);
-  if (scene.ground()) ground_pass_.record(commands, layout_, *frame_set_, view.terms, kind);
-  sky_pass_.record(commands, layout_, *frame_set_, kind);
+  backdrop_pass_.record(commands, layout_, *frame_set_, view.terms, kind, scene.ground());
   commands.endRendering();
 }
 
@@ -273,8 +272,7 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
   std::memcpy(uniforms_.memory.mapped(), &uniforms, sizeof(uniforms));
   const DrawKind kind = kindOf(view);
   plant_pass_.prepare(*device_, layout_, scene, view.terms);
-  if (scene.ground()) ground_pass_.prepare(*device_, layout_, view.terms, kind);
-  sky_pass_.prepare(*device_, layout_, kind);
+  backdrop_pass_.prepare(*device_, layout_, view.terms, kind, scene.ground());
 
   device_->submit([&](const vk::raii::CommandBuffer& commands) {
     timers_.reset(commands);

@@ -30,17 +30,22 @@ LitPlant growLit(const std::string& species, std::uint32_t seed) {
   return lit;
 }
 
+View viewOf(const FiguresCommand& command) {
+  View view;
+  std::tie(view.width, view.height) = parseSize(command.size);
+  view.daylight = parseDaylight({});
+  return view;
+}
+
 /// The page, and what draws its pictures.
 class FigureSet {
  public:
   explicit FigureSet(const FiguresCommand& command)
-      : renderer_(command.device),
+      : view_(viewOf(command)),
+        renderer_(command.device),
         page_(command.output, "Expressive illumination of foliage based on implicit surfaces",
               "Figures 1 to 6 of Luft, Balzer and Deussen (2007), from verdure's plants on " +
-                  renderer_.deviceName() + ".") {
-    std::tie(view_.width, view_.height) = parseSize(command.size);
-    view_.daylight = parseDaylight({});
-  }
+                  renderer_.deviceName() + ".") {}
 
   Renderer& renderer() { return renderer_; }
   Page& page() { return page_; }
@@ -56,9 +61,9 @@ class FigureSet {
   }
 
  private:
-  Renderer renderer_;
-  Page page_;
   View view_;
+  Renderer renderer_;
+  Page page_;  ///< last: what is refused leaves no folder behind
 };
 
 /// Fig. 2: the implicit surface of two generators of the plane.

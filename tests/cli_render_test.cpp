@@ -78,6 +78,7 @@ TEST_F(CommandLineRender, OptionsOfTheView) {
   EXPECT_GT(difference(plain, picture(tree, {"--key", "0.36"})), 5.0);
   EXPECT_GT(difference(plain, picture(tree, {"--exposure", "12"})), 5.0);
   EXPECT_GT(difference(plain, picture(tree, {"--white", "1"})), 0.5);
+  EXPECT_EQ(difference(plain, picture(tree, {"--white", "auto"})), 0.0);
   EXPECT_GT(difference(plain, picture(tree, {"--bloom", "0.5"})), 0.5);
   EXPECT_GT(difference(plain, picture(tree, {"--terms",
                                              "ambient,diffuse,specular,shadow,textures,"
@@ -172,6 +173,7 @@ TEST_F(CommandLineRender, Refuses) {
   refused({"--exposure", "99"}, {"--exposure: 99 is out of range"});
   refused({"--key", "0"}, {"--key: 0 is out of range"});
   refused({"--white", "-1"}, {"--white: -1 is out of range"});
+  refused({"--white", "bright"}, {"--white: 'bright' is no number"});
   refused({"--bloom", "2"}, {"--bloom: 2 is out of range"});
   refused({"--light", "transfer"}, {"no transfer vectors", "bake --transfer"});
   refused({"--sky", "cie:16"}, {"--sky: 'cie:16' is no CIE standard sky"});
@@ -201,12 +203,28 @@ TEST_F(CommandLineRender, Refuses) {
   expectRefused({"figures", "luft", "-o", tree}, {"the folder cannot be made", "-o"});
 }
 
+TEST_F(CommandLineRender, FiguresOfTheSky) {
+  runWell({"figures", "sky", "-o", path("sky")});
+  const std::string page = textOf(path("sky/index.html"));
+  std::vector<Image> pictures;
+  for (const std::string name :
+       {"figure56-morning-2.5", "figure56-midday-2.5", "figure56-sunset-2.5", "figure56-midday-6",
+        "figure57-midday", "figure57-sunset", "figure57-sun-ahead"}) {
+    EXPECT_NE(page.find("'" + name + ".png'"), std::string::npos) << name;
+    pictures.push_back(readImage(path("sky/" + name + ".png")));
+    for (std::size_t i = 0; i + 1 < pictures.size(); ++i)
+      EXPECT_GT(difference(pictures[i], pictures.back()), 1.0) << name << ", " << i;
+  }
+  EXPECT_NE(page.find("figure53a.png"), std::string::npos);
+}
+
 TEST_F(CommandLineRender, SaysWhatToInstallWithoutVulkan) {
   const std::string tree = smallTree();
   const Words nothing = {"VK_ICD_FILENAMES=/nonexistent", "VK_DRIVER_FILES=/nonexistent"};
   expectRefused({"render", tree, "-o", path("out.png")},
                 {"Vulkan", "install", "mesa-vulkan-drivers"}, nothing);
   expectRefused({"figures", "luft", "-o", path("figures")}, {"Vulkan", "install"}, nothing);
+  expectRefused({"figures", "sky", "-o", path("figures")}, {"Vulkan", "install"}, nothing);
   EXPECT_EQ(run({"bake", tree, "-o", path("out.glb")}, nothing).code, 0);  // needs no device
 }
 

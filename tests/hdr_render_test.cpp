@@ -5,8 +5,10 @@
 #include "render/frame_light.h"
 #include "render/packed_transfer.h"
 #include "render_fixture.h"
+#include "scene/display.h"
 #include "shared/leaf.h"
 #include "shared/sky.h"
+#include "verdure/reference.h"
 
 // Light in physical units, and the way from it to the display.
 
@@ -32,6 +34,30 @@ TEST(Tone, CurveIsThePapers) {
     }
   }
   EXPECT_NEAR(shared::reinhard(1.0f, 1e6f), 0.5f, 1e-6f);  // without a white point, (3)
+}
+
+TEST(Tone, TheAutomaticWhiteShowsWhatIsBright) {
+  float before = 0.0f;
+  for (float bright = 0.0f; bright < 30.0f; bright += 0.01f) {
+    const float white = shared::automaticWhite(bright);
+    EXPECT_GE(white, std::max(before, 2.0f));
+    EXPECT_LE(white, 10.0f);
+    if (white == 2.0f) {
+      EXPECT_LE(shared::reinhard(bright, white), 0.8001f);
+    } else if (white < 10.0f) {
+      EXPECT_NEAR(shared::reinhard(bright, white), 0.8f, 1e-4f);
+    }
+    before = white;
+  }
+  EXPECT_EQ(before, 10.0f);
+  // Every luminance lies in its bin, and the next bin starts where it ends.
+  for (float l = 1e-9f; l < 4e9f; l *= 1.37f) {
+    const int bin = shared::luminanceBin(l);
+    EXPECT_GE(shared::luminanceInBin(bin, 0.0f), 0.9999f * l);
+    EXPECT_LE(shared::luminanceInBin(bin, 1.0f), 1.0001f * l);
+    EXPECT_EQ(shared::luminanceInBin(bin, 0.0f), shared::luminanceInBin(bin + 1, 1.0f));
+  }
+  EXPECT_EQ(shared::luminanceBin(0.0f), 0);
 }
 
 TEST(Tone, KeepsLuminanceAndHueInTheDisplaysGamut) {
@@ -414,14 +440,63 @@ TEST_F(HdrRender, PicturesAreTheToneMappedLight) {
     const Frame frame = renderer().render(view);
     for (int y = 0; y < view.height; ++y)
       for (int x = 0; x < view.width; ++x) {
-        const glm::vec3 shown =
-            shared::toneMapped(frame.hdr.at(x, y) * (view.exposure.key / frame.average_luminance),
-                               view.exposure.white);
+        const glm::vec3 shown = shared::toneMapped(
+            frame.hdr.at(x, y) * (view.exposure.key / frame.average_luminance), frame.white);
         for (int c = 0; c < 3; ++c)
           EXPECT_NEAR(frame.image.at(x, y)[c], 255.0f * shared::srgbFromLinear(shown[c]), 1.6f)
               << x << " " << y;
       }
   }
+}
+
+TEST_F(HdrRender, TheWhitePointFollowsTheBrightSky) {
+  const Plant quad = whiteQuad();
+  Scene scene = itemScene(quad, nullptr);
+  scene.ground = true;
+  renderer().setScene(scene);
+  View view = quadView();
+  view.width = 150;
+  view.height = 70;
+  view.background.reset();
+  view.bloom = 0.0f;
+  view.terms.diffuse = view.terms.specular = false;  // what the disk lights is not in question
+  float towards_low_sun = 0.0f;
+  for (const float elevation : {-0.05f, 0.03f, 0.3f, 1.0f})
+    for (const bool facing : {true, false}) {
+      view.camera = {{0, 1, 5}, {0, 0.5f, 0}, 1.0f};
+      view.daylight = preethamDaylight(3.0f, directionOf(facing ? 3.3f : 0.0f, elevation));
+      const Frame frame = renderer().render(view);
+      // The same on the CPU; and near the definition, counted without bins.
+      EXPECT_NEAR(frame.white,
+                  automaticWhite(frame.hdr, frame.average_luminance, view.exposure.key),
+                  2e-3f * frame.white);
+      std::vector<float> all;
+      for (const glm::vec3& c : frame.hdr.rgb) all.push_back(shared::luminanceOf(c));
+      std::sort(all.begin(), all.end());
+      const float bright = all[all.size() - all.size() / 100 - 1] / frame.average_luminance;
+      EXPECT_GE(frame.white, shared::automaticWhite(0.93f * bright * view.exposure.key));
+      EXPECT_LE(frame.white, shared::automaticWhite(1.07f * bright * view.exposure.key));
+      EXPECT_EQ(renderer().render(view).white, frame.white);
+      if (elevation == 1.0f) {
+        EXPECT_EQ(frame.white, 2.0f);  // noon
+      }
+      if (elevation == 0.03f && facing) towards_low_sun = frame.white;
+      // The sun's disk is not what it follows.
+      View no_disk = view;
+      no_disk.daylight.sun.luminance = glm::vec3(0.0f);
+      no_disk.exposure.ev = std::log2(frame.average_luminance / 0.125e-3f);
+      EXPECT_NEAR(renderer().render(no_disk).white, frame.white, 0.05f * frame.white) << elevation;
+    }
+  EXPECT_GT(towards_low_sun, 2.5f);
+  setItem(quad, nullptr);
+  // Background is not of the scene, and a given white point is the given one.
+  view.background = glm::vec3(1.0f);
+  view.daylight = {uniformSky(glm::vec3(3.0f), glm::vec3(3.0f)), {}};
+  view.terms = {.diffuse = false, .specular = false, .shadow = false};
+  view.exposure = {.ev = std::log2(1.0f / 0.125e-3f), .key = 1.0f, .white = {}};  // the quad: 3
+  EXPECT_NEAR(renderer().render(view).white, shared::automaticWhite(3.0f), 1.0f);
+  view.exposure.white = 7.5f;
+  EXPECT_EQ(renderer().render(view).white, 7.5f);
 }
 
 TEST_F(HdrRender, BrightSkyDoesNotEatLeaves) {
@@ -496,6 +571,62 @@ TEST_F(HdrRender, NightFallsWithoutNonsense) {
       }
     EXPECT_LE(frame.average_luminance, before) << elevation;
     before = frame.average_luminance;
+  }
+}
+
+/// Looks over open ground from `height`, the horizon a third of a field of view above the middle.
+View horizonView(float height, float azimuth, float fov) {
+  View view = smallView(32, 120);
+  view.bloom = 0.0f;
+  view.terms = presetTerms("standard");
+  const glm::vec3 eye(0.0f, height, 0.0f);
+  view.camera = {eye, eye + 15.0f * directionOf(azimuth, -0.113f * fov), fov};
+  return view;
+}
+
+TEST_F(HdrRender, NoRowStandsOutAlongTheHorizon) {
+  renderer().setScene(Scene{.items = {}, .ground = true});
+  for (const float fov : {0.02f, 0.2f, 0.6f, 1.2f})
+    for (const float sun : {-0.02f, 0.005f, 0.1f, 0.9f})
+      for (const float height : {0.3f, 1.7f, 20.0f})
+        for (const float azimuth : {0.36f, 1.8f, 3.4f}) {  // towards the sun, aside, away from it
+          View view = horizonView(height, azimuth, fov);
+          view.terms.textures = false;
+          view.daylight = preethamDaylight(3.0f, directionOf(0.3f, sun));
+          view.daylight.sun.luminance = glm::vec3(0.0f);
+          const HdrImage image = renderer().render(view).hdr;
+          const float pixel = 2.0f * std::tan(0.5f * fov) / static_cast<float>(view.height);
+          for (const int x : {2, 20})
+            for (int y = 1; y + 1 < view.height; ++y) {
+              if (std::abs(pixelRay(view, x, y).y) > 4.0f * pixel) continue;
+              const float above = luminanceAt(image, x, y - 1), here = luminanceAt(image, x, y),
+                          below = luminanceAt(image, x, y + 1);
+              EXPECT_LE(here, 1.03f * std::max(above, below));
+              EXPECT_GE(here, 0.97f * std::min(above, below))
+                  << "row " << y << ", column " << x << ", field of view " << fov << ", sun " << sun
+                  << ", eye " << height << " m, azimuth " << azimuth;
+            }
+        }
+}
+
+TEST_F(HdrRender, TheHorizonIsTheReferences) {
+  Scene scene{.items = {}, .ground = true};
+  renderer().setScene(scene);
+  // A sky that falls steeply around a sun on the horizon, through a long lens.
+  View view = horizonView(1.7f, 0.3f, 0.02f);
+  view.daylight = {cieSky(15, directionOf(0.3f, 0.002f)), {}};
+  ReferenceOptions options;
+  options.width = view.width;
+  options.height = view.height;
+  options.camera = view.camera;
+  options.samples = 64;
+  const HdrImage frame = renderer().render(view).hdr;
+  const HdrImage truth = renderReference(scene, view.daylight, options).image;
+  for (int y = 0; y < view.height; ++y) {
+    const float height = pixelRay(view, 16, y).y;
+    if (height < -0.002f) break;  // the grass is seen, and the path tracer's noise
+    const bool sky = height > 2e-4f;
+    for (const int x : {2, 16, 30}) expectPixel(frame, x, y, truth.at(x, y), sky ? 0.002f : 0.02f);
   }
 }
 

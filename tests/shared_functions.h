@@ -24,8 +24,9 @@ struct SharedResults {
   vec4 harmonics;  // shIrradiance
   vec4 tone;       // toneMapped, ditheredLevel / 256
   vec4 dome;       // domeCoordinates, reinhard, luminanceOf
+  vec4 white;      // automaticWhite / 10, luminanceBin / 512, luminanceInBin / 16
 };
-SHARED_SIZE(SharedResults, 144);
+SHARED_SIZE(SharedResults, 160);
 
 SHARED_FUNCTION SharedResults evaluateShared(vec4 a, vec4 b) {
   vec3 n = normalize(vec3(a.x - 0.5f, a.y - 0.5f, a.z - 0.45f));
@@ -67,6 +68,9 @@ SHARED_FUNCTION SharedResults evaluateShared(vec4 a, vec4 b) {
   r.tone = vec4(toneMapped(bright, 1.0f + 4.0f * b.w),
                 ditheredLevel(floor(256.0f * b.x) / 255.0f, b.y) / 256.0f);
   r.dome = vec4(at.x, at.y, reinhard(9.0f * a.y, 0.5f + b.w), luminanceOf(bright));
+  r.white = vec4(automaticWhite(8.0f * a.x) / 10.0f,
+                 float(luminanceBin(exp2(floor(40.0f * a.y) - 20.0f + 0.0625f))) / 512.0f,
+                 luminanceInBin(200 + int(88.0f * b.x), b.y) / 16.0f, 0.0f);
   return r;
 }
 

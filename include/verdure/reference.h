@@ -55,8 +55,8 @@ struct ReferencePicture {
 /// Torrance 1982), which takes from the light below what it reflects. Shading normals may point
 /// away from the triangle's side: the part of a lobe that would go through the surface is mirrored
 /// back, so that as much light leaves as arrives. The sun is seen, and its disk shines, only above
-/// the horizon; where an eye without ground looks below it into a black sky, it sees the horizon,
-/// as in the renderer.
+/// the horizon; the last half degree of the sky, and what an eye without ground sees below it, look
+/// as the sky does there (shared::domeDirection()), as in the renderer.
 ///
 /// A picture depends on the scene, the options and the number of samples, not on threads or time.
 /// Throws Error for options out of range and what RayScene refuses.

@@ -55,8 +55,10 @@ struct Exposure {
   /// Exposure value at ISO 100 (15 = full sun): of the luminance 0.125 cd/m^2 2^ev that takes the
   /// place of the picture's log-average. Unset: that average, measured.
   std::optional<float> ev;
-  float key = 0.3f;    ///< a: to which the average is scaled, > 0; 0.09 is a dark, 0.36 a light key
-  float white = 2.0f;  ///< smallest scaled luminance that becomes pure white, > 0
+  float key = 0.3f;  ///< a: to which the average is scaled, > 0; 0.09 is a dark, 0.36 a light key
+  /// Smallest scaled luminance that becomes pure white, > 0. Unset: found from the picture
+  /// (shared::automaticWhite()), 2 for most, up to 10 towards a low sun.
+  std::optional<float> white;
 };
 
 /// One picture. The defaults are a clear summer day.
@@ -88,7 +90,8 @@ struct Frame {
   /// range that the daylight sets. Background is black. Empty unless View::hdr.
   HdrImage hdr;
   float average_luminance =
-      0.0f;  ///< kcd/m^2: log-average of the picture, or what the EV stands for
+      0.0f;            ///< kcd/m^2: log-average of the picture, or what the EV stands for
+  float white = 0.0f;  ///< white point of the picture, in scaled luminance
   FrameTimes times;
 };
 

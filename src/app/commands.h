@@ -88,7 +88,7 @@ Daylight parseDaylight(const DaylightOptions& options);
 struct ExposureOptions {
   std::string exposure = "auto";
   double key = 0.3;
-  double white = 2.0;
+  std::string white = "auto";
   double bloom = 0.01;
 };
 Exposure parseExposure(const ExposureOptions& options);
@@ -155,13 +155,14 @@ struct SkyCommand {
 };
 void runSky(const SkyCommand& command);
 
-/// Figures 5.3 to 5.5 of Habel 2009, with a page that shows them and the errors as JSON; the sun
+/// Figures 5.3 to 5.7 of Habel 2009, with a page that shows them and the errors as JSON; the sun
 /// and the turbidity are those of Figure 5.5.
 struct SkyReport {
   std::string folder = "figures";
   int bands = 7;
   glm::vec3 to_sun{0.0f, 0.70710678f, 0.70710678f};
   float turbidity = 3.0f;
+  std::optional<DeviceOptions> scenes = {};  ///< draws Figures 5.6 and 5.7; else they are left out
 };
 void writeSkyReport(const SkyReport& report);
 

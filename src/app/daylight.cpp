@@ -89,7 +89,8 @@ Exposure parseExposure(const ExposureOptions& options) {
     return static_cast<float>(value);
   };
   exposure.key = positive("--key", options.key);
-  exposure.white = positive("--white", options.white);
+  if (options.white != "auto")
+    exposure.white = positive("--white", double{parseNumbers("--white", options.white, 1)[0]});
   return exposure;
 }
 

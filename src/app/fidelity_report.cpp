@@ -228,8 +228,9 @@ class SubjectPictures {
                Outcomes& outcomes) {
     const Exposure exposure;
     const float average = averageLuminance(truth);
+    const float white = automaticWhite(truth, average, exposure.key);
     const auto show = [&](const HdrImage& image) {
-      return displayed(image, average, exposure.key, exposure.white);
+      return displayed(image, average, exposure.key, white);
     };
     const Image shown_truth = show(truth);
     const std::string prefix = fmt::format("{}-{}", species, sun + 1);

@@ -6,15 +6,12 @@
 
 #include "app/commands.h"
 #include "app/page.h"
-#include "base/files.h"
 #include "base/progress.h"
 #include "shared/density.h"
 #include "verdure/error.h"
 
 namespace verdure::app {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr float kDegree = static_cast<float>(M_PI / 180.0);
 
@@ -33,56 +30,40 @@ LitPlant growLit(const std::string& species, std::uint32_t seed) {
   return lit;
 }
 
-/// Pictures and their captions, collected for the page.
+View viewOf(const FiguresCommand& command) {
+  View view;
+  std::tie(view.width, view.height) = parseSize(command.size);
+  view.daylight = parseDaylight({});
+  return view;
+}
+
+/// The page, and what draws its pictures.
 class FigureSet {
  public:
-  FigureSet(const FiguresCommand& command, fs::path folder)
-      : folder_(std::move(folder)), renderer_(command.device) {
-    std::tie(view_.width, view_.height) = parseSize(command.size);
-    view_.daylight = parseDaylight({});
-  }
+  explicit FigureSet(const FiguresCommand& command)
+      : view_(viewOf(command)),
+        renderer_(command.device),
+        page_(command.output, "Expressive illumination of foliage based on implicit surfaces",
+              "Figures 1 to 6 of Luft, Balzer and Deussen (2007), from verdure's plants on " +
+                  renderer_.deviceName() + ".") {}
 
   Renderer& renderer() { return renderer_; }
-  View& view() { return view_; }
-  float aspect() const {
-    return static_cast<float>(view_.width) / static_cast<float>(view_.height);
+  Page& page() { return page_; }
+  /// All of the scene, from a direction in degrees.
+  void show(const Scene& scene, float azimuth_deg) {
+    const float aspect = static_cast<float>(view_.width) / static_cast<float>(view_.height);
+    view_.camera = automaticCamera(scene, azimuth_deg * kDegree, 4.0f * kDegree, aspect);
+    renderer_.setScene(scene);
   }
-
-  void heading(const std::string& text) { page_ += fmt::format("<h2>{}</h2>\n", text); }
-  void beginRow() { page_ += "<div class=row>\n"; }
-  void endRow() { page_ += "</div>\n"; }
-
   void draw(const std::string& name, const Terms& terms, const std::string& caption) {
     view_.terms = terms;
-    writePng(renderer_.render(view_).image, folder_ / (name + ".png"));
-    add(name + ".png", caption);
-  }
-  void svg(const std::string& name, const std::string& body, const std::string& caption) {
-    writeFile(folder_ / (name + ".svg"), body);
-    add(name + ".svg", caption);
-  }
-  void writePage() const {
-    writeFile(folder_ / "index.html",
-              "<!doctype html><meta charset=utf-8><title>Luft, Balzer, Deussen 2007</title>\n"
-              "<style>body{font:15px/1.45 sans-serif;margin:2em auto;max-width:1320px;"
-              "padding:0 1em;color:#222}.row{display:flex;flex-wrap:wrap;gap:12px}"
-              "figure{margin:0;flex:1 1 300px;max-width:640px}img{width:100%;height:auto}"
-              "figcaption{color:#555}</style>\n"
-              "<h1>Expressive illumination of foliage based on implicit surfaces</h1>\n"
-              "<p>Figures 1 to 6 of Luft, Balzer and Deussen (2007), from verdure's plants on " +
-                  renderer_.deviceName() + ".</p>\n" + page_);
+    page_.picture(name, renderer_.render(view_).image, caption);
   }
 
  private:
-  void add(const std::string& file, const std::string& caption) {
-    page_ += fmt::format("<figure><img src='{}' alt='{}'><figcaption>{}</figcaption></figure>\n",
-                         file, caption, caption);
-  }
-
-  fs::path folder_;
-  Renderer renderer_;
   View view_;
-  std::string page_;
+  Renderer renderer_;
+  Page page_;  ///< last: what is refused leaves no folder behind
 };
 
 /// Fig. 2: the implicit surface of two generators of the plane.
@@ -132,7 +113,7 @@ std::string transferSvg() {
   };
   label(x(0.0f), y(0.0f) + 22, "middle", "0");
   label(x(kDMin), y(0.0f) + 22, "middle", "d<tspan dy='4' font-size='11'>min</tspan>");
-  label(x(0.0f) - 8, y(1.0f) + 5, "end", "1");
+  label(x(0.0f) - 8, y(1.0f) - 8, "end", "1");
   label(x(0.0f) - 8, y(kLeast) + 5, "end", "k<tspan dy='4' font-size='11'>min</tspan>");
   label(x(0.55f), y(0.0f) + 52, "middle", "density value d of the vertex (kernel sum − τ)");
   out += fmt::format(
@@ -194,19 +175,18 @@ void drawGroup(FigureSet& figures) {
         {&group[i].plant,
          &group[i].bake.light,
          {glm::mat4({1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, glm::vec4(places[i], 1.0f))}});
-  figures.view().camera = automaticCamera(scene, 15.0f * kDegree, 4.0f * kDegree, figures.aspect());
-  figures.renderer().setScene(scene);
-  figures.heading("Figure 1: standard and expressive illumination");
-  figures.beginRow();
+  figures.show(scene, 15.0f);
+  figures.page().heading("Figure 1: standard and expressive illumination");
+  figures.page().beginRow();
   figures.draw("figure1a", presetTerms("standard"), "(a) standard local illumination");
   figures.draw("figure1b", presetTerms("expressive"),
                "(b) expressive illumination based on implicit surfaces");
-  figures.endRow();
+  figures.page().endRow();
 }
 
 void drawSurfaces(FigureSet& figures, const LitPlant& tree) {
-  figures.heading("Figure 3: one tree and its surfaces under three (ρ, τ)");
-  figures.beginRow();
+  figures.page().heading("Figure 3: one tree and its surfaces under three (ρ, τ)");
+  figures.page().beginRow();
   figures.draw("figure3a", presetTerms("standard"), "(a) the tree");
   // The ratios of the paper's (18, 7), (25.5, 20), (33.5, 50); its unit of length is unknown, so
   // the middle pair is the one found from the crown.
@@ -228,11 +208,11 @@ void drawSurfaces(FigureSet& figures, const LitPlant& tree) {
         fmt::format("figure3{}", "bcd"[i]), presetTerms("standard"),
         fmt::format("({}) ρ = {:.2f} m, τ = {:.1f}", "bcd"[i], *options.rho, *options.tau));
   }
-  figures.endRow();
+  figures.page().endRow();
 }
 
 void drawTerms(FigureSet& figures) {
-  figures.heading("Figure 5: illumination components");
+  figures.page().heading("Figure 5: illumination components");
   Terms none = presetTerms("expressive");
   none.ambient = none.diffuse = none.specular = none.shadow = none.textures = false;
   Terms a = none, b = none;
@@ -244,65 +224,61 @@ void drawTerms(FigureSet& figures) {
   d.shadow = true;
   Terms e = d;
   e.textures = true;
-  figures.beginRow();
+  figures.page().beginRow();
   figures.draw("figure5a", a, "(a) ambient");
   figures.draw("figure5b", b, "(b) diffuse/specular");
   figures.draw("figure5c", c, "(c) ambient, diffuse/specular");
-  figures.endRow();
-  figures.beginRow();
+  figures.page().endRow();
+  figures.page().beginRow();
   figures.draw("figure5d", d, "(d) ambient, diffuse/specular, shadow");
   figures.draw("figure5e", e, "(e) ambient, diffuse/specular, shadow, textures");
   figures.draw("figure5f", presetTerms("standard"), "(f) standard local illumination model");
-  figures.endRow();
+  figures.page().endRow();
 }
 
 }  // namespace
 
 void runLuftFigures(const FiguresCommand& command) {
-  const fs::path folder(command.output);
   speciesParameters(command.species);  // throws if there is no such species
-  FigureSet figures(command, folder);
-  makePageFolder(folder);
+  FigureSet figures(command);
   Progress progress("figures luft");
   progress.show("figure 1");
   drawGroup(figures);
 
-  figures.heading("Figure 2: an implicit surface of two generators in the plane");
-  figures.beginRow();
-  figures.svg("figure2", implicitSurfaceSvg(), "p₁, p₂ with radii of influence r₁, r₂; τ = 0.3");
-  figures.endRow();
+  figures.page().heading("Figure 2: an implicit surface of two generators in the plane");
+  figures.page().beginRow();
+  figures.page().svg("figure2", implicitSurfaceSvg(),
+                     "p₁, p₂ with radii of influence r₁, r₂; τ = 0.3");
+  figures.page().endRow();
 
   progress.show("figure 3");
   const LitPlant tree = growLit(command.species, 4);
   Scene scene;
   scene.items.push_back({&tree.plant, &tree.bake.light});
-  figures.view().camera = automaticCamera(scene, 35.0f * kDegree, 4.0f * kDegree, figures.aspect());
-  figures.renderer().setScene(scene);
+  figures.show(scene, 35.0f);
   drawSurfaces(figures, tree);
 
-  figures.heading("Figure 4: ambient coefficient over density, for three exponents");
-  figures.beginRow();
-  figures.svg("figure4", transferSvg(), "equation (4) with n = 1/3, 1 and 3");
-  figures.endRow();
+  figures.page().heading("Figure 4: ambient coefficient over density, for three exponents");
+  figures.page().beginRow();
+  figures.page().svg("figure4", transferSvg(), "equation (4) with n = 1/3, 1 and 3");
+  figures.page().endRow();
 
   progress.show("figure 5");
   figures.renderer().setScene(scene);
   drawTerms(figures);
 
   progress.show("figure 6");
-  figures.heading("Figure 6: standard and expressive (the paper's photograph is left out)");
+  figures.page().heading("Figure 6: standard and expressive (the paper's photograph is left out)");
   const LitPlant other = growLit("quaking-aspen", 2);
   Scene second;
   second.items.push_back({&other.plant, &other.bake.light});
-  figures.view().camera =
-      automaticCamera(second, 20.0f * kDegree, 4.0f * kDegree, figures.aspect());
-  figures.renderer().setScene(second);
-  figures.beginRow();
+  figures.show(second, 20.0f);
+  figures.page().beginRow();
   figures.draw("figure6a", presetTerms("standard"), "standard local illumination");
   figures.draw("figure6c", presetTerms("expressive"), "the presented method");
-  figures.endRow();
-  figures.writePage();
-  fmt::print("{}\n", (folder / "index.html").string());
+  figures.page().endRow();
+  figures.page().write();
+  fmt::print("{}\n", (figures.page().folder() / "index.html").string());
 }
 
 }  // namespace verdure::app

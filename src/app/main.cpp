@@ -114,7 +114,8 @@ void addExposureOptions(CLI::App& command, ExposureOptions& exposure) {
   command.add_option("--key", exposure.key, "Brightness of the average, 0.09 dark to 0.36 light")
       ->capture_default_str();
   command
-      .add_option("--white", exposure.white, "Luminance of pure white, in averages times the key")
+      .add_option("--white", exposure.white,
+                  "auto, or the luminance of pure white in averages times the key")
       ->capture_default_str();
 }
 
@@ -296,9 +297,10 @@ int run(int argc, char** argv) {
   luft_app->add_option("--size", figures.size, "WxH of each picture")->capture_default_str();
   addDeviceOptions(*luft_app, figures.device);
   SkyReport sky_figures;
-  CLI::App* habel_app = figures_app->add_subcommand("sky", "Habel 2009: 5.3 to 5.5");
+  CLI::App* habel_app = figures_app->add_subcommand("sky", "Habel 2009: 5.3 to 5.7");
   habel_app->add_option("-o,--output", sky_figures.folder, "Folder to write")
       ->capture_default_str();
+  addDeviceOptions(*habel_app, sky_figures.scenes.emplace());
 
   FidelityCommand fidelity;
   CLI::App* report_app = app.add_subcommand("report", "Measure what verdure claims");

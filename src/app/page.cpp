@@ -7,18 +7,14 @@
 
 namespace verdure::app {
 
-void makePageFolder(const std::filesystem::path& folder) {
-  std::error_code problem;
-  std::filesystem::create_directories(folder, problem);
-  if (problem)
-    throw Error(folder.string(), "the folder cannot be made (" + problem.message() + ")",
-                "choose another with -o");
-  checkWritable(folder / "index.html");
-}
-
 Page::Page(std::filesystem::path folder, std::string title, std::string introduction)
     : folder_(std::move(folder)), title_(std::move(title)), introduction_(std::move(introduction)) {
-  makePageFolder(folder_);
+  std::error_code problem;
+  std::filesystem::create_directories(folder_, problem);
+  if (problem)
+    throw Error(folder_.string(), "the folder cannot be made (" + problem.message() + ")",
+                "choose another with -o");
+  checkWritable(folder_ / "index.html");
 }
 
 void Page::heading(const std::string& text) {

@@ -9,13 +9,11 @@
 
 namespace verdure::app {
 
-/// Makes the folder of a page unless it is there. Throws Error if index.html could not be written.
-void makePageFolder(const std::filesystem::path& folder);
-
 /// A folder of pictures and the page that shows them.
 class Page {
  public:
-  /// Makes the folder. Throws Error if it cannot.
+  /// Makes the folder unless it is there. Throws Error if it cannot or index.html could not be
+  /// written.
   Page(std::filesystem::path folder, std::string title, std::string introduction);
 
   void heading(const std::string& text);

@@ -44,10 +44,11 @@ void runReference(const ReferenceCommand& command) {
   const ReferencePicture picture = renderReference(scene, light, options);
   const float average =
       exposure.ev ? shared::meteredLuminance(*exposure.ev) : averageLuminance(picture.image);
+  const float white = exposure.white.value_or(automaticWhite(picture.image, average, exposure.key));
   if (std::filesystem::path(command.output).extension() == ".exr")
     writeExr(picture.image, command.output);
   else
-    writePng(displayed(picture.image, average, exposure.key, exposure.white), command.output);
+    writePng(displayed(picture.image, average, exposure.key, white), command.output);
   progress.show("done");
   const double paths = static_cast<double>(options.width) * options.height * picture.samples;
   if (command.json)
@@ -56,6 +57,7 @@ void runReference(const ReferenceCommand& command) {
                                               {"samples", picture.samples},
                                               {"noise", picture.noise},
                                               {"average_kcd_m2", average},
+                                              {"white", white},
                                               {"seconds", picture.seconds},
                                               {"paths_per_second", paths / picture.seconds}}
                            .dump(2));

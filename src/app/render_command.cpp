@@ -187,6 +187,7 @@ void runRender(const RenderCommand& command) {
                                       {"color_ms", frame.times.color_ms},
                                       {"tone_ms", frame.times.tone_ms},
                                       {"average_kcd_m2", frame.average_luminance},
+                                      {"white", frame.white},
                                       {"validation_messages", renderer.validationMessages()}}
                    .dump(2));
   else

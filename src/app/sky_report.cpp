@@ -1,14 +1,14 @@
-// figures sky, and sky --report: Figures 5.3 to 5.5 of Habel 2009.
+// figures sky (Figures 5.3 to 5.7 of Habel 2009), and sky --report (those up to 5.5).
 #include <fmt/format.h>
 
 #include <cmath>
-#include <filesystem>
 #include <glm/gtc/constants.hpp>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
 #include "app/page.h"
 #include "app/sky_pictures.h"
+#include "app/sky_scenes.h"
 #include "base/files.h"
 #include "base/progress.h"
 #include "verdure/error.h"
@@ -17,14 +17,7 @@
 namespace verdure::app {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr int kPanoramaHeight = 320;
-
-std::string figure(const std::string& file, const std::string& caption) {
-  return fmt::format("<figure><img src='{}' alt='{}'><figcaption>{}</figcaption></figure>\n", file,
-                     caption, caption);
-}
 
 Light lightOf(const Harmonics& harmonics) {
   return [&harmonics](const glm::vec3& d) { return valueAt(harmonics, d); };
@@ -46,9 +39,7 @@ std::string errorPlot(const SkyFitErrors& errors, int bands) {
         std::clamp(std::log10(std::max(error, 1e-30)), double{kLow}, double{kHigh});
     return kTop + kHeight * static_cast<float>((kHigh - power) / (kHigh - kLow));
   };
-  std::string out =
-      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 600 400' width='600' height='400' "
-      "font-family='sans-serif' font-size='14'>\n<rect width='600' height='400' fill='white'/>\n";
+  std::string out = svgOpen(600, 400);
   for (int power = kLow; power <= kHigh; ++power) {
     const float at = y(std::pow(10.0, power));
     out += fmt::format("<path d='M{:.0f} {:.1f}h{:.0f}' stroke='#ddd'/>\n", kLeft, at, kWidth);
@@ -92,9 +83,7 @@ std::string ringingPlot(const Harmonics& plain, const Harmonics& filtered, const
   const auto y = [&](float v) {
     return 30.0f + 300.0f * (top - std::clamp(v, bottom, top)) / (top - bottom);
   };
-  std::string out =
-      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 600 400' width='600' height='400' "
-      "font-family='sans-serif' font-size='14'>\n<rect width='600' height='400' fill='white'/>\n";
+  std::string out = svgOpen(600, 400);
   out += fmt::format("<path d='M70 {:.1f}H556M{:.1f} 30V330' stroke='#bbb'/>\n", y(0.0f), x(90));
   for (const int degree : {-90, -45, 0, 45, 90})
     out += svgText(x(degree + 90), 352, fmt::format("{}°", degree), "text-anchor='middle'");
@@ -130,8 +119,13 @@ Image differencePicture(const HdrImage& a, const HdrImage& b, float step) {
 }  // namespace
 
 void writeSkyReport(const SkyReport& report) {
-  const fs::path folder(report.folder);
-  makePageFolder(folder);
+  std::optional<Renderer> renderer;
+  if (report.scenes) renderer.emplace(*report.scenes);
+  Page page(report.folder, "Skylight models for lighting with spherical harmonics",
+            fmt::format("Figures 5.3 to {} of Habel, Real-Time Rendering and Animation of "
+                        "Vegetation (2009). The panoramas show all directions, north in the "
+                        "middle.",
+                        renderer ? "5.7" : "5.5"));
   Progress progress("sky");
   progress.show("fitting");
   SkyFitOptions options;
@@ -143,7 +137,6 @@ void writeSkyReport(const SkyReport& report) {
   progress.show("drawing");
 
   // Fig. 5.3, at the thesis' worst case and at ours.
-  std::string page;
   const auto compare = [&](const std::string& name, float zenith, float turbidity,
                            const std::string& title) {
     const Harmonics truth = projectSky(*model(zenith, turbidity), report.bands);
@@ -151,14 +144,13 @@ void writeSkyReport(const SkyReport& report) {
     const HdrImage a = drawPanorama(lightOf(truth), kPanoramaHeight);
     const HdrImage b = drawPanorama(lightOf(fitted), kPanoramaHeight);
     const float mean = meanLuminance(a), step = mean * 1e-6f;
-    writePng(toneMapped(a, mean), folder / (name + "a.png"));
-    writePng(toneMapped(b, mean), folder / (name + "b.png"));
-    writePng(differencePicture(a, b, step), folder / (name + "c.png"));
-    page += fmt::format("<h2>{}</h2>\n<div class=row>\n", title);
-    page += figure(name + "a.png", "correct: projected") +
-            figure(name + "b.png", "reconstructed: the fit") +
-            figure(name + "c.png", "difference: a level of gray is a millionth of the mean");
-    page += "</div>\n";
+    page.heading(title);
+    page.beginRow();
+    page.picture(name + "a", toneMapped(a, mean), "correct: projected");
+    page.picture(name + "b", toneMapped(b, mean), "reconstructed: the fit");
+    page.picture(name + "c", differencePicture(a, b, step),
+                 "difference: a level of gray is a millionth of the mean");
+    page.endRow();
   };
   compare("figure53", glm::half_pi<float>(), 6.0f,
           fmt::format("Figure 5.3: the thesis' worst case, N = {}, θs = 90°, τ = 6", report.bands));
@@ -166,29 +158,29 @@ void writeSkyReport(const SkyReport& report) {
           fmt::format("... and the worst case of this fit, θs = {:.0f}°, τ = {:.2f}",
                       glm::degrees(errors.worst_sun_zenith), errors.worst_turbidity));
 
-  writeFile(folder / "figure54.svg", errorPlot(errors, report.bands));
-  page += "<h2>Figure 5.4: highest upper bound of the errors</h2>\n<div class=row>\n" +
-          figure("figure54.svg",
-                 fmt::format("over θs 0 to 90° and τ {:g} to {:g}, of L_min = {:.3f} kcd/m²",
-                             options.turbidity_min, options.turbidity_max, errors.least_weight)) +
-          "</div>\n";
+  page.heading("Figure 5.4: highest upper bound of the errors");
+  page.beginRow();
+  page.svg("figure54", errorPlot(errors, report.bands),
+           fmt::format("over θs 0 to 90° and τ {:g} to {:g}, of L_min = {:.3f} kcd/m²",
+                       options.turbidity_min, options.turbidity_max, errors.least_weight));
+  page.endRow();
 
-  page += "<h2>Figure 5.5: ringing below the horizon</h2>\n";
+  page.heading("Figure 5.5: ringing below the horizon");
   const auto ring = [&](const std::string& name, const glm::vec3& to_sun) {
     const Daylight light = preethamDaylight(report.turbidity, to_sun);
     const Harmonics plain = projectSky(*light.sky, report.bands);
     const Harmonics filtered = withoutRinging(plain);
     const HdrImage picture = drawPanorama(lightOf(plain), kPanoramaHeight);
     const float mean = meanLuminance(picture);
-    writePng(toneMapped(picture, mean), folder / (name + "a.png"));
-    writePng(toneMapped(drawPanorama(lightOf(filtered), kPanoramaHeight), mean),
-             folder / (name + "b.png"));
-    writeFile(folder / (name + "c.svg"),
-              ringingPlot(plain, filtered, *light.sky, std::atan2(to_sun.x, to_sun.z)));
-    page += fmt::format("<p>Sun {:.0f}° high, τ = {:g}.</p>\n<div class=row>\n",
-                        glm::degrees(std::asin(light.sun.direction.y)), report.turbidity);
-    page += figure(name + "a.png", "original") + figure(name + "b.png", "filtered, (5.5)") +
-            figure(name + "c.svg", "green in the vertical plane through the sun") + "</div>\n";
+    page.paragraph(fmt::format("Sun {:.0f}° high, τ = {:g}.",
+                               glm::degrees(std::asin(light.sun.direction.y)), report.turbidity));
+    page.beginRow();
+    page.picture(name + "a", toneMapped(picture, mean), "original");
+    page.picture(name + "b", toneMapped(drawPanorama(lightOf(filtered), kPanoramaHeight), mean),
+                 "filtered, (5.5)");
+    page.svg(name + "c", ringingPlot(plain, filtered, *light.sky, std::atan2(to_sun.x, to_sun.z)),
+             "green in the vertical plane through the sun");
+    page.endRow();
   };
   ring("figure55", report.to_sun);
   // A low sun's ringing is not zonal: the filter does little about it.
@@ -206,19 +198,11 @@ void writeSkyReport(const SkyReport& report) {
     json["errors"].push_back({{"bands", n},
                               {"maximal", errors.maximal[static_cast<std::size_t>(n - 1)]},
                               {"mean", errors.mean[static_cast<std::size_t>(n - 1)]}});
-  writeFile(folder / "report.json", json.dump(2) + "\n");
-  writeFile(folder / "index.html",
-            "<!doctype html><meta charset=utf-8><title>Habel 2009, chapter 5</title>\n"
-            "<style>body{font:15px/1.45 sans-serif;margin:2em auto;max-width:1320px;"
-            "padding:0 1em;color:#222}.row{display:flex;flex-wrap:wrap;gap:12px}"
-            "figure{margin:0;flex:1 1 300px;max-width:640px}img{width:100%;height:auto}"
-            "figcaption{color:#555}</style>\n"
-            "<h1>Skylight models for lighting with spherical harmonics</h1>\n"
-            "<p>Figures 5.3 to 5.5 of Habel, Real-Time Rendering and Animation of Vegetation "
-            "(2009). The panoramas show all directions, north in the middle.</p>\n" +
-                page);
+  writeFile(page.folder() / "report.json", json.dump(2) + "\n");
+  if (renderer) addSkyScenes(page, progress, *renderer);
+  page.write();
   progress.show("done");
-  fmt::print("{}\n", (folder / "index.html").string());
+  fmt::print("{}\n", (page.folder() / "index.html").string());
 }
 
 }  // namespace verdure::app

@@ -139,9 +139,7 @@ class PathTracer {
 
   /// Sky and sun as the eye sees them.
   glm::vec3 seenSky(const glm::vec3& direction) const {
-    glm::vec3 seen = sky_.luminance(direction);
-    if (direction.y < 0.0f && seen == glm::vec3(0.0f))
-      seen = sky_.luminance(shared::domeDirection(direction));
+    glm::vec3 seen = sky_.luminance(shared::domeDirection(direction));
     if (sun_.shines() && sun_.contains(direction)) seen += sun_.luminance(direction);
     return seen;
   }

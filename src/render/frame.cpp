@@ -129,8 +129,8 @@ void FrameDrawer::checkView(const View& view) const {
   demand(view.sky_bands >= 2 && view.sky_bands <= kMaxBands, "sky_bands", "choose 2 to 7");
   demand(view.exposure.key > 0.0f && std::isfinite(view.exposure.key), "exposure.key",
          "choose a number above 0");
-  demand(view.exposure.white > 0.0f && std::isfinite(view.exposure.white), "exposure.white",
-         "choose a number above 0");
+  const float white = view.exposure.white.value_or(1.0f);
+  demand(white > 0.0f && std::isfinite(white), "exposure.white", "choose a number above 0");
   demand(!view.exposure.ev || std::abs(*view.exposure.ev) <= 40.0f, "exposure.ev",
          "choose -40 to 40");
   demand(view.bloom >= 0.0f && view.bloom <= 1.0f, "bloom", "choose 0 to 1");
@@ -178,8 +178,8 @@ shared::FrameUniforms FrameDrawer::makeUniforms(const GpuScene& scene, const Vie
   const CameraRays rays = cameraRays(view.camera, aspect);
   u.clip_from_world = clipFromWorld(view.camera, aspect);
   u.eye = glm::vec4(rays.eye, units);
-  u.ray_right = glm::vec4(rays.right, 0.0f);
-  u.ray_down = glm::vec4(rays.down, 0.0f);
+  u.ray_right = glm::vec4(rays.right, 2.0f / static_cast<float>(view.width));
+  u.ray_down = glm::vec4(rays.down, 2.0f / static_cast<float>(view.height));
   u.ray_forward = glm::vec4(rays.forward, 0.0f);
   const ShadowFit fit = fitShadow(scene.bounds(), light.to_sun, view.shadow_map_size);
   u.shadow_from_world = fit.shadow_from_world;
@@ -232,8 +232,7 @@ void FrameDrawer::recordColor(const vk::raii::CommandBuffer& commands, const Gpu
                                        .maxDepth = 1.0f});
   commands.setScissor(0, area);
   plant_pass_.record(commands, layout_, *frame_set_, scene, view.terms);
-  if (scene.ground()) ground_pass_.record(commands, layout_, *frame_set_, view.terms, kind);
-  sky_pass_.record(commands, layout_, *frame_set_, kind);
+  backdrop_pass_.record(commands, layout_, *frame_set_, view.terms, kind, scene.ground());
   commands.endRendering();
 }
 
@@ -243,7 +242,8 @@ void FrameDrawer::recordTone(const vk::raii::CommandBuffer& commands, const View
                     gpu::Use::kFragmentSampled);
   gpu::imageBarrier(commands, *targets_->resolved.image, kColorAspect, gpu::Use::kColorAttachment,
                     gpu::Use::kComputeSampled);
-  if (!view.exposure.ev) exposure_pass_.record(commands, look::kLeastLuminance * units);
+  if (!view.exposure.ev || !view.exposure.white)
+    exposure_pass_.record(commands, look::kLeastLuminance * units);
   gpu::imageBarrier(commands, *targets_->resolved.image, kColorAspect, gpu::Use::kComputeSampled,
                     gpu::Use::kFragmentSampled);
   bloom_pass_.record(commands, view.bloom > 0.0f);
@@ -251,7 +251,7 @@ void FrameDrawer::recordTone(const vk::raii::CommandBuffer& commands, const View
       commands, targets_->picture,
       {.background = glm::vec4(view.background.value_or(glm::vec3(0.0f)), 0.0f),
        .key = view.exposure.key,
-       .white = view.exposure.white,
+       .white = view.exposure.white.value_or(0.0f),
        .average = view.exposure.ev ? shared::meteredLuminance(*view.exposure.ev) * units : 0.0f,
        .bloom = view.bloom});
 }
@@ -272,8 +272,7 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
   std::memcpy(uniforms_.memory.mapped(), &uniforms, sizeof(uniforms));
   const DrawKind kind = kindOf(view);
   plant_pass_.prepare(*device_, layout_, scene, view.terms);
-  if (scene.ground()) ground_pass_.prepare(*device_, layout_, view.terms, kind);
-  sky_pass_.prepare(*device_, layout_, kind);
+  backdrop_pass_.prepare(*device_, layout_, view.terms, kind, scene.ground());
 
   device_->submit([&](const vk::raii::CommandBuffer& commands) {
     timers_.reset(commands);
@@ -292,8 +291,13 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
   Frame frame;
   frame.image = targets_->readPicture();
   if (view.hdr) frame.hdr = targets_->readHdr(units);
-  frame.average_luminance = view.exposure.ev ? shared::meteredLuminance(*view.exposure.ev)
-                                             : exposure_pass_.average() / units;
+  const ExposurePass::Measured measured = exposure_pass_.measured();
+  frame.average_luminance =
+      view.exposure.ev ? shared::meteredLuminance(*view.exposure.ev) : measured.average / units;
+  const float exposure =
+      frame.average_luminance > 0.0f ? view.exposure.key / frame.average_luminance : 0.0f;
+  frame.white =
+      view.exposure.white.value_or(shared::automaticWhite(measured.bright / units * exposure));
   frame.times.shadow_ms = timers_.milliseconds(0, 1);
   frame.times.color_ms = timers_.milliseconds(1, 2);
   frame.times.tone_ms = timers_.milliseconds(2, 3);

@@ -4,16 +4,15 @@
 #include <optional>
 
 #include "gpu/timers.h"
+#include "render/backdrop_pass.h"
 #include "render/bloom_pass.h"
 #include "render/exposure_pass.h"
 #include "render/frame_layout.h"
 #include "render/frame_light.h"
 #include "render/ground_light.h"
-#include "render/ground_pass.h"
 #include "render/plant_pass.h"
 #include "render/shadow_pass.h"
 #include "render/sky_image.h"
-#include "render/sky_pass.h"
 #include "render/targets.h"
 #include "render/tone_pass.h"
 #include "render/transfer_pass.h"
@@ -47,8 +46,7 @@ class FrameDrawer {
   TransferPass transfer_pass_;
   ShadowPass shadow_pass_;
   PlantPass plant_pass_;
-  GroundPass ground_pass_;
-  SkyPass sky_pass_;
+  BackdropPass backdrop_pass_;
   ExposurePass exposure_pass_;
   BloomPass bloom_pass_;
   TonePass tone_pass_;

@@ -26,10 +26,10 @@ TonePass::TonePass(const gpu::Device& device)
       set_(device, set_layout_) {}
 
 void TonePass::setSource(const gpu::Texture& color, const gpu::Texture& bloom,
-                         const gpu::Buffer& average) {
+                         const gpu::Buffer& measured) {
   set_.setTexture(0, color, *nearest_);
   set_.setTexture(1, bloom, *linear_);
-  set_.setBuffer(2, average);
+  set_.setBuffer(2, measured);
 }
 
 void TonePass::record(const vk::raii::CommandBuffer& commands, const gpu::Texture& target,

@@ -13,8 +13,9 @@ class TonePass {
   explicit TonePass(const gpu::Device& device);
   static constexpr vk::Format kFormat = vk::Format::eR8G8B8A8Unorm;  ///< sRGB values, encoded here
 
-  /// `color`: multisampled, alpha = share that is not background; `average`: its first float.
-  void setSource(const gpu::Texture& color, const gpu::Texture& bloom, const gpu::Buffer& average);
+  /// `color`: multisampled, alpha = share that is not background; `measured`: an
+  /// ExposurePass::Measured.
+  void setSource(const gpu::Texture& color, const gpu::Texture& bloom, const gpu::Buffer& measured);
   /// The sources must be kFragmentSampled and kFragmentStorage. Leaves `target` as
   /// kColorAttachment.
   void record(const vk::raii::CommandBuffer& commands, const gpu::Texture& target,

@@ -1,6 +1,7 @@
 #include "scene/display.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -10,11 +11,35 @@
 
 namespace verdure {
 
+namespace {
+
+/// As exposure_mean.comp finds it, kcd/m^2.
+float brightLuminance(const HdrImage& image) {
+  std::array<std::uint32_t, shared::kLuminanceBins> bins{};
+  for (const glm::vec3& c : image.rgb)
+    ++bins[static_cast<std::size_t>(shared::luminanceBin(shared::luminanceOf(c)))];
+  const float need = shared::kBrightShare * static_cast<float>(image.rgb.size());
+  float above = 0.0f;
+  for (int bin = shared::kLuminanceBins - 1; bin >= 0; --bin) {
+    const auto count = static_cast<float>(bins[static_cast<std::size_t>(bin)]);
+    if (count > 0.0f && above + count >= need)
+      return shared::luminanceInBin(bin, (need - above) / count);
+    above += count;
+  }
+  return 0.0f;
+}
+
+}  // namespace
+
 float averageLuminance(const HdrImage& image) {
   double sum = 0.0;
   for (const glm::vec3& c : image.rgb)
     sum += std::log(double{look::kLeastLuminance} + double{shared::luminanceOf(c)});
   return static_cast<float>(std::exp(sum / static_cast<double>(image.rgb.size())));
+}
+
+float automaticWhite(const HdrImage& image, float average, float key) {
+  return shared::automaticWhite(average > 0.0f ? brightLuminance(image) * key / average : 0.0f);
 }
 
 Image displayed(const HdrImage& image, float average, float key, float white) {

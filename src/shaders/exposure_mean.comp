@@ -1,10 +1,29 @@
 #version 460
-// The tiles' sums to one: average_and_weight.x = log-average luminance (Reinhard's (1)), 0 if there
-// is nothing but background.
+#extension GL_GOOGLE_include_directive : require
+#include "shared/tone.h"
+// From what the tiles found to the log-average luminance (Reinhard's (1)) and the bright luminance;
+// 0 if there is nothing but background.
 layout(local_size_x = 256) in;
 layout(set = 0, binding = 0) uniform sampler2D color;
-layout(set = 0, binding = 1, std430) buffer Sums { vec2 average_and_weight; vec2 tiles[]; };
+layout(set = 0, binding = 1, std430) readonly buffer Work {
+  uint bins[kLuminanceBins];
+  vec2 tiles[];
+};
+layout(set = 0, binding = 2, std430) writeonly buffer Result { float average, bright; };
 shared vec2 sums[256];
+
+float brightLuminance() {
+  uint total = 0u, above = 0u;
+  for (int b = 0; b < kLuminanceBins; ++b) total += bins[b];
+  float need = kBrightShare * float(total);
+  for (int b = kLuminanceBins - 1; b >= 0; --b) {
+    uint count = bins[b];
+    if (count > 0u && float(above + count) >= need)
+      return luminanceInBin(b, (need - float(above)) / float(count));
+    above += count;
+  }
+  return 0.0;
+}
 
 void main() {
   ivec2 size = (textureSize(color, 0) + 63) / 64;
@@ -16,6 +35,7 @@ void main() {
     barrier();
     if (i < half_size) sums[i] += sums[i + half_size];
   }
-  if (i == 0u)
-    average_and_weight = vec2(sums[0].y > 0.0 ? exp2(sums[0].x / sums[0].y) : 0.0, sums[0].y);
+  if (i != 0u) return;
+  average = sums[0].y > 0.0 ? exp2(sums[0].x / sums[0].y) : 0.0;
+  bright = brightLuminance();
 }

@@ -7,10 +7,6 @@
 #include "dome.glsl"
 #include "sun_visibility.glsl"
 
-layout(location = 0) in vec3 position;
-/// Where a covered sample lies: at the horizon the pixel's centre may lie above it, where the plane
-/// of the ground is behind the eye.
-layout(location = 1) centroid in vec3 covered;
 layout(location = 0) out vec4 out_color;
 
 /// A texture seen at a grazing angle: four taps along the long axis of the pixel's footprint, each
@@ -42,8 +38,11 @@ vec3 mappedLight(vec3 p) {
 }
 
 void main() {
-  vec3 to_eye = frame.eye.xyz - covered;
-  float distance = length(to_eye);
+  vec3 direction = pixelDirection();
+  float distance = (frame.ground.x - frame.eye.y) / direction.y;
+  // A centre beyond the horizon sees the disc's end.
+  if (!(distance > 0.0 && distance < frame.ground.y)) distance = frame.ground.y;
+  vec3 position = frame.eye.xyz + distance * direction;
   vec3 n = vec3(0.0, 1.0, 0.0);
   vec3 color = kTextures ? grass(position.xz) : vec3(0.18);
   float visibility = kShadow ? sunVisibility(position, n) : 1.0;
@@ -54,6 +53,6 @@ void main() {
                           0.0);
   // Alpha 0 is the background, where there is one instead of the sky.
   float haze = hazeShare(distance, frame.ground.z);
-  vec3 far = kBackground ? vec3(0.0) : domeLuminance(-to_eye / distance);
+  vec3 far = kBackground ? vec3(0.0) : domeLuminance(direction);
   out_color = vec4(storable(mix(lit, far, haze)), kBackground ? 1.0 - haze : 1.0);
 }

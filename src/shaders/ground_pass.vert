@@ -4,14 +4,11 @@
 
 // A disc around the eye, as a fan of kSlices triangles; no vertex buffers.
 const int kSlices = 64;
-layout(location = 0) out vec3 out_position;
-layout(location = 1) centroid out vec3 out_covered;
 
 void main() {
   int corner = gl_VertexIndex % 3;
   float angle = float(gl_VertexIndex / 3 + (corner == 2 ? 1 : 0)) * (6.28318531 / float(kSlices));
   vec2 rim = corner == 0 ? vec2(0.0) : vec2(cos(angle), sin(angle)) * frame.ground.y;
-  out_position = vec3(frame.eye.x + rim.x, frame.ground.x, frame.eye.z + rim.y);
-  out_covered = out_position;
-  gl_Position = frame.clip_from_world * vec4(out_position, 1.0);
+  gl_Position = frame.clip_from_world *
+                vec4(frame.eye.x + rim.x, frame.ground.x, frame.eye.z + rim.y, 1.0);
 }

@@ -4,7 +4,6 @@
 #include "terms.glsl"
 #include "dome.glsl"
 
-layout(location = 0) in vec3 ray;
 layout(location = 0) out vec4 out_color;
 
 /// Share of a pixel that the sun's disk covers: a ramp two pixels wide, scaled so that the disk's
@@ -23,7 +22,7 @@ void main() {
     out_color = vec4(0.0);
     return;
   }
-  vec3 direction = normalize(ray);
+  vec3 direction = pixelDirection();
   float coverage = sunCoverage(direction);
   vec3 color = domeLuminance(direction);
   if (direction.y >= 0.0) color += frame.sun_disk.rgb * coverage;

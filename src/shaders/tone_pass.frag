@@ -7,13 +7,14 @@
 layout(constant_id = 0) const int kSamples = 4;
 layout(set = 0, binding = 0) uniform sampler2DMS color;
 layout(set = 0, binding = 1) uniform sampler2D bloom;
-layout(set = 0, binding = 2, std430) readonly buffer Sums { vec2 average_and_weight; };
+layout(set = 0, binding = 2, std430) readonly buffer Measured { vec2 average_and_bright; };
 layout(push_constant) uniform ToneBlock { ToneUniforms tone; };
 layout(location = 0) out vec4 out_color;
 
 void main() {
-  float average = tone.average > 0.0 ? tone.average : average_and_weight.x;
+  float average = tone.average > 0.0 ? tone.average : average_and_bright.x;
   float exposure = average > 0.0 ? tone.key / average : 0.0;
+  float white = tone.white > 0.0 ? tone.white : automaticWhite(average_and_bright.y * exposure);
   vec3 glow = vec3(0.0);
   if (tone.bloom > 0.0) {
     vec4 spread = textureLod(bloom, gl_FragCoord.xy / vec2(textureSize(color)), 0.0);
@@ -25,7 +26,7 @@ void main() {
   for (int i = 0; i < kSamples; ++i) {
     vec4 c = texelFetch(color, ivec2(gl_FragCoord.xy), i);
     vec3 lit = c.a > 0.0 ? mix(c.rgb / c.a, glow, tone.bloom) : vec3(0.0);
-    sum += mix(tone.background.rgb, toneMapped(lit * exposure, tone.white), c.a);
+    sum += mix(tone.background.rgb, toneMapped(lit * exposure, white), c.a);
   }
   vec3 linear = sum / float(kSamples);
   vec3 level;

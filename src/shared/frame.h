@@ -21,8 +21,8 @@ struct FrameUniforms {
   vec4
       ground;  ///< height, radius of the disc, half distance of the haze, size of a texture tile, m
   vec4 ground_map;  ///< corner x, z of the map of light on the ground, 1 / its size, m; 0 = none
-  vec4 ray_right;   ///< ray through pixel (x, y) of [-1, 1]^2: forward + x right + y down
-  vec4 ray_down;
+  vec4 ray_right;   ///< ray through (x, y) of [-1, 1]^2: forward + x right + y down; w = 2 / width
+  vec4 ray_down;    ///< w = 2 / height, pixels
   vec4 ray_forward;
   vec4 open_light[9];  ///< shIrradiance() / pi by the open sky and the open ground
   SkyFormula sky;      ///< kcd/m^2, where the sky has one
@@ -41,7 +41,7 @@ SHARED_SIZE(DrawUniforms, 48);
 struct ToneUniforms {
   vec4 background;  ///< linear display RGB
   float key;        ///< scaled luminance of the average
-  float white;      ///< smallest scaled luminance that is pure white
+  float white;      ///< smallest scaled luminance that is pure white; 0 = automaticWhite()
   float average;    ///< frame units; 0 = as measured
   float bloom;      ///< share of light that is spread
 };

@@ -7,8 +7,8 @@
 
 SHARED_BEGIN
 
-/// Where the dome is looked up for a unit direction: below the horizon, just above it. Ground in
-/// haze and what lies beyond it take the sky's luminance there.
+/// Where an eye looks the dome up for a unit direction: near and below the horizon, just above it.
+/// The sky's last half degree, ground in haze and what lies beyond it so take one luminance.
 SHARED_FUNCTION vec3 domeDirection(vec3 direction) {
   return normalize(vec3(direction.x, max(direction.y, 0.01f), direction.z));
 }

@@ -34,6 +34,31 @@ SHARED_FUNCTION vec3 toneMapped(vec3 scaled, float white) {
   return top <= 1.0f ? color : vec3(d) + (color - vec3(d)) * ((1.0f - d) / (top - d));
 }
 
+/// A picture's pixels are counted in bins of their luminance, eight for each factor of two around 1
+/// in whatever unit, and its bright luminance is the one that this share of them exceeds: few
+/// enough that the sky around the sun counts, too many for the sun's disk and for highlights.
+const int kLuminanceBins = 512;
+const float kBrightShare = 0.01f;
+
+SHARED_FUNCTION int luminanceBin(float l) {
+  float at = 8.0f * log2(max(l, 2.4e-10f)) + 0.5f * float(kLuminanceBins);
+  return clamp(int(floor(at)), 0, kLuminanceBins - 1);
+}
+
+/// The luminance in a bin that `above` in [0, 1] of the bin's pixels exceed, if they lie evenly.
+SHARED_FUNCTION float luminanceInBin(int bin, float above) {
+  return exp2((float(bin) + 1.0f - above - 0.5f * float(kLuminanceBins)) * 0.125f);
+}
+
+/// The white point of a picture of which kBrightShare is brighter than the scaled luminance
+/// `bright`: the one for which (4) shows that as 0.8. (The paper takes the largest luminance, so
+/// that nothing burns out, but that is the sun's disk where it is seen.) At least 2, with which
+/// pictures without such lights look best; at most 10, near which the curve hardly depends on it.
+SHARED_FUNCTION float automaticWhite(float bright) {
+  float room = 0.8f - 0.2f * bright;  // bright^2 / white^2, where positive
+  return room > 0.0f ? clamp(bright / sqrt(room), 2.0f, 10.0f) : 10.0f;
+}
+
 /// kcd/m^2 that an exposure value at ISO 100 stands for: reflected-light meters with K = 12.5 (ISO
 /// 2720).
 SHARED_FUNCTION float meteredLuminance(float ev) {

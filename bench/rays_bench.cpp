@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "bake/light_path.h"
+#include "bake/ray_directions.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "rays/ray_scene.h"

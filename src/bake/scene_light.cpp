@@ -24,7 +24,7 @@ constexpr double kGatherCost = 0.05;  ///< of one slot, beside a ray
 
 /// Rays for each side of a patch. A vertex gathers from many patches, whose noise averages out.
 std::size_t raysEach(const RayOptions& options) {
-  return static_cast<std::size_t>(std::max(options.rays / 8, std::min(options.rays, 16)));
+  return static_cast<std::size_t>(std::max(options.rays / 8, std::min(options.rays, 8)));
 }
 
 // A triangle cut into n * n alike: row j (of the third corner's weight) has n - j of the triangle's
@@ -100,7 +100,7 @@ void SceneLight::layPatches() {
       slots * (count_ * sizeof(float) * (options_.bounces > 1 ? 7 : 4) +
                (options_.bounces > 1 ? rays_each_ * sizeof(Slot) : 0) + sizeof(Side)) +
       splits_.size() * sizeof(Split);
-  if (bytes > options_.max_memory_bytes || slots >= kBlack)
+  if (bytes > options_.max_memory_bytes || slots >= kInside)
     throw Error("bounced light",
                 fmt::format("needs {} MiB, more than the {} MiB allowed", bytes >> 20,
                             options_.max_memory_bytes >> 20),
@@ -132,7 +132,7 @@ SceneLight::Slot SceneLight::slotOf(const Ray& ray, const RayHit& hit) const {
     return first_cell_ + static_cast<Slot>(at.y) * kCells + static_cast<Slot>(at.x);
   }
   const bool leaf = plant_.meshes[hit.mesh].kind == PartKind::kFoliage;
-  if (!leaf && !hit.front) return kBlack;
+  if (!leaf && !hit.front) return kInside;
   const Split& split = splits_[first_triangle_[hit.mesh] + hit.triangle];
   const std::uint32_t part = partAt(hit.barycentric, split.n);
   return split.first + (leaf ? 2 * part + (hit.front ? 0 : 1) : part);
@@ -166,11 +166,11 @@ void SceneLight::gather(std::span<const Slot> slots, float* sums) const {
   constexpr std::size_t kAhead = 4;
   for (std::size_t s = 0; s < slots.size(); ++s) {
 #if defined(__GNUC__)
-    if (s + kAhead < slots.size() && slots[s + kAhead] != kBlack)
+    if (s + kAhead < slots.size() && slots[s + kAhead] < kInside)
       for (std::size_t i = 0; i < n; i += 16)
         __builtin_prefetch(&passed_[slots[s + kAhead] * n + i]);
 #endif
-    if (slots[s] == kBlack) continue;
+    if (slots[s] >= kInside) continue;
     const float* values = &passed_[slots[s] * n];
     for (std::size_t i = 0; i < n; ++i) sums[i] += values[i];
   }
@@ -205,19 +205,20 @@ void SceneLight::tracePatch(TriangleId id, std::uint32_t part, Random& random) {
       }
       if (!found) continue;
       const SurfacePoint point = rays_.scene.surfaceAt(at, {});
-      mean.reflectance += point.reflectance;
-      if (point.foliage) mean.transmittance += shared::leafTransmittance(point.reflectance);
-      ++points;
       const glm::vec3 normal = side == 0 ? point.normal : -point.normal;
       const glm::vec2 u = lattice.point(static_cast<int>(r));
       Ray ray;
       ray.origin = rays_.scene.originOff(point.position, normal);
       ray.direction = axesAround(normal) * cosineDirection(u.x, u.y);
       const Slot met = follow(ray, &direct_[slot * count_]);
+      if (met == kInside) continue;  // the point lies within wood, where nothing sees it
       if (!met_.empty()) met_[slot * rays_each_ + r] = met;
       ++traced;
+      mean.reflectance += point.reflectance;
+      if (point.foliage) mean.transmittance += shared::leafTransmittance(point.reflectance);
     }
     if (traced > 0) sides_[slot].weight = 1.0f / static_cast<float>(traced);
+    points += traced;
   }
   if (points == 0) return;
   for (std::size_t slot = first; slot < first + sides; ++slot) {

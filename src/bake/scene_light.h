@@ -32,6 +32,7 @@ class SceneLight {
  public:
   using Slot = std::uint32_t;  ///< one side of a patch
   static constexpr Slot kBlack = std::numeric_limits<Slot>::max();
+  static constexpr Slot kInside = kBlack - 1;  ///< the inside of wood: as black
 
   /// `bands` of harmonics, 0: an even light of 1 (one coefficient). Without bounces surfaces are
   /// black, and the rest does nothing. Throws Error: more memory than allowed.

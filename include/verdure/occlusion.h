@@ -58,9 +58,9 @@ std::vector<Openness> traceOpenness(const Plant& plant, std::span<const VertexId
 /// Ambient occlusion: the light that reaches a vertex's hemisphere, weighted by the cosine to its
 /// normal, from a world of even light 1, linear RGB (1 = open). Light is reflected diffusely by
 /// every surface and diffusely transmitted by leaves (shared::leafTransmittance); with bounces = 0
-/// it is the plain share of free sky. With bounces the light that all surfaces of the plant pass on is
-/// found first, however few the vertices. `normals`, if given, replace the mesh's own (light of this
-/// plant: a vertex whose crown normal looks out of the crown is lit from there). Throws as
+/// it is the plain share of free sky. With bounces the light that all surfaces of the plant pass on
+/// is found first, however few the vertices. `normals`, if given, replace the mesh's own (light of
+/// this plant: a vertex whose crown normal looks out of the crown is lit from there). Throws as
 /// traceOpenness.
 std::vector<glm::vec3> traceAmbient(const Plant& plant, std::span<const VertexId> vertices,
                                     const RayOptions& options = {},

@@ -10,9 +10,9 @@
 #include <optional>
 #include <vector>
 
-#include "bake/light_path.h"
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "light_paths.h"
 #include "rays/ray_scene.h"
 #include "verdure/grow.h"
 #include "verdure/occlusion.h"
@@ -231,29 +231,48 @@ void run(const std::string& species, LeafForm form) {
            {"RayScene::trace with its cut", distances(traced(cut))}},
           rays.size());
   if (form == LeafForm::kCard) return;
-  // A share of the vertices, and what it makes for all.
-  std::vector<VertexId> some;
+  // Whole plants, but for the paths: a share of the vertices, and what it makes for all.
   const std::vector<VertexId> all = allVertices(plant);
-  for (std::size_t i = 0; i < all.size(); i += 1 + all.size() / 4000) some.push_back(all[i]);
-  for (const int bounces : {0, 3}) {
-    RayOptions o;
-    o.bounces = bounces;
-    o.ground_height = 0.0f;
-    timer.lap();
-    traceAmbient(plant, some, o);
-    const double per_vertex = timer.lap() / static_cast<double>(some.size());
-    fmt::print("ambient, 256 rays, {} bounces: {:.1f} s for 200,000 vertices\n", bounces,
-               per_vertex * 2e5);
-  }
-  // Whole plants only: few rays, and what it makes for all.
-  TransferOptions t;
-  t.rays.rays = 4;
-  t.rays.ground_height = 0.0f;
-  t.ground_size = 0;
+  RayOptions o;
+  o.rays = 64;
+  o.ground_height = 0.0f;
+  const auto tell = [&](const char* what, double share = 1.0) {
+    fmt::print("{}: {:.1f} s for 200,000 vertices\n", what,
+               timer.lap() * 2e5 / (share * static_cast<double>(all.size())));
+  };
   timer.lap();
+  {
+    Scene world;
+    world.items.emplace_back().plant = &plant;
+    const RayScene scene(world);
+    const RayStarts starts(plant, scene, o.ground_height);
+    constexpr std::size_t kStep = 64;
+    std::vector<glm::vec3> light(all.size() / kStep);
+    timer.lap();
+    parallelChunks(light.size(), 64, [&](std::size_t begin, std::size_t end) {
+      const RayThread mode;
+      for (std::size_t i = begin; i < end; ++i) {
+        const VertexId id = all[i * kStep];
+        Random random(i);
+        test::followPaths(
+            scene, starts, id, plant.meshes[id.mesh].normals[id.vertex], o.rays, o.bounces, true,
+            random,
+            [&](const glm::vec3&, const glm::vec3& throughput, int) { light[i] += throughput; });
+      }
+    });
+    tell("whole paths, 64 rays, 3 bounces",
+         static_cast<double>(light.size()) / static_cast<double>(all.size()));
+  }
+  for (const int bounces : {0, 3}) {
+    o.bounces = bounces;
+    bakeAmbient(plant, o);
+    tell(bounces == 0 ? "ambient, 64 rays, 0 bounces" : "ambient, 64 rays, 3 bounces");
+  }
+  TransferOptions t;
+  t.rays = o;
+  t.ground_size = 0;
   bakeTransfer(plant, t);
-  fmt::print("transfer, 5 bands, 256 rays each side, 3 bounces: {:.1f} s for 200,000 vertices\n",
-             timer.lap() * 64.0 * 2e5 / static_cast<double>(all.size()));
+  tell("transfer, 5 bands, 64 rays each side, 3 bounces");
 }
 
 }  // namespace

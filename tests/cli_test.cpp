@@ -90,6 +90,21 @@ TEST_F(CommandLine, GrowInspectBakeInspect) {
   EXPECT_NE(runWell({"inspect", path("b.glb")}).find("_AO"), std::string::npos);
 }
 
+TEST_F(CommandLine, WhereRaysGiveAllNoFieldIsBaked) {
+  const std::string tree = smallTree();
+  Words command = {"bake",      tree,   "-o",     path("b.glb"), "--ambient", "ray-traced",
+                   "--normals", "keep", "--rays", "8",           "--json"};
+  const Json report = Json::parse(runWell(command));
+  EXPECT_EQ(report["kind"], "none");
+  EXPECT_GT(report["rays"]["mean_ambient"].get<double>(), 0.1);
+  EXPECT_LT(report["rays"]["mean_ambient"].get<double>(), 1.0);
+  const Json baked = Json::parse(runWell({"inspect", path("b.glb"), "--json"}));
+  EXPECT_NE(baked["attributes"].dump().find("_AO"), std::string::npos);
+  command.resize(6);  // crown normals come from the field
+  command.insert(command.end(), {"--rays", "8", "--json"});
+  EXPECT_EQ(Json::parse(runWell(command))["kind"], "optical-depth");
+}
+
 TEST_F(CommandLine, ListsSpeciesAndParameters) {
   const Json species = Json::parse(runWell({"grow", "--list", "--json"}));
   const std::string list = runWell({"grow", "--list"});

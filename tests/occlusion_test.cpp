@@ -9,11 +9,13 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "light_paths.h"
 #include "ray_plants.h"
 #include "shared/leaf.h"
 #include "shared/sky.h"
 #include "test_plants.h"
 #include "verdure/error.h"
+#include "verdure/grow.h"
 #include "verdure/plant_io.h"
 
 namespace verdure {
@@ -103,7 +105,7 @@ TEST(Ambient, UnderASheetIsItsTransmittance) {
   plant.meshes[1].kind = PartKind::kFoliage;
   EXPECT_EQ(ambient(plant, manyRays(512, 0)).g, 0.0f);
   // The sky is on both sides of it: what it reflects comes from below.
-  const glm::vec3 lit = ambient(plant, manyRays(16384, 1));
+  const glm::vec3 lit = ambient(plant, manyRays(2048, 1));
   const glm::vec3 shines = shared::leafTransmittance(color) + color;
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(lit[c], shines[c], 0.01f);
   // With a black ground below the probe (a sheet) only what comes through is left.
@@ -112,7 +114,7 @@ TEST(Ambient, UnderASheetIsItsTransmittance) {
   plant.meshes.back().material = 2;
   plant.materials[2].base_color = {0, 0, 0, 1};
   plant.meshes.back().kind = PartKind::kWood;
-  const glm::vec3 through = ambient(plant, manyRays(32768, 1));
+  const glm::vec3 through = ambient(plant, manyRays(2048, 1));
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(through[c], shared::leafTransmittance(color)[c], 0.01f);
 }
 
@@ -137,7 +139,7 @@ TEST(Ambient, InAWhiteFurnaceEverythingIsWhite) {
   plant.materials[0].base_color = glm::vec4(1.0f);
   float before = -1.0f;
   for (const int bounces : {0, 1, 2, 4, 64}) {
-    const float lit = ambient(plant, manyRays(8192, bounces)).g;
+    const float lit = ambient(plant, manyRays(1024, bounces)).g;
     EXPECT_GT(lit, before);
     before = lit;
   }
@@ -147,12 +149,12 @@ TEST(Ambient, InAWhiteFurnaceEverythingIsWhite) {
   plant.materials[0].base_color = glm::vec4(0.6f, 0.6f, 0.6f, 1.0f);
   float sum = 0.0f, power = 1.0f;
   for (int j = 0; j <= 3; ++j, power *= 0.6f * 0.5f) sum += 0.5f * power;
-  EXPECT_NEAR(ambient(plant, manyRays(65536, 3)).g, sum, 0.01f);
+  EXPECT_NEAR(ambient(plant, manyRays(2048, 3)).g, sum, 0.01f);
 }
 
 TEST(Ambient, TheGroundReflects) {
   Plant plant = probe({0, 5, 0}, {1, 0, 0}, 0.01f);
-  RayOptions options = manyRays(16384, 2);
+  RayOptions options = manyRays(2048, 2);
   options.ground_height = 0.0f;
   const glm::vec3 lit = ambient(plant, options);
   for (int c = 0; c < 3; ++c)
@@ -223,8 +225,56 @@ TEST(Ambient, AnAlphaCutIsTheGeometryThatItLeaves) {
     return plant;
   };
   EXPECT_NEAR(openness(under(true)).share, openness(under(false)).share, 0.003f);
-  EXPECT_NEAR(ambient(under(true), manyRays(8192, 2)).g, ambient(under(false), manyRays(8192, 2)).g,
+  EXPECT_NEAR(ambient(under(true), manyRays(2048, 2)).g, ambient(under(false), manyRays(2048, 2)).g,
               0.006f);
+}
+
+/// The bounced part of some vertices' light, gathered, against whole paths: bounds of the mean
+/// difference and of the root of the mean squares, beside the mean.
+void expectLightOfPaths(const Plant& plant, double most_bias, double most_rms) {
+  RayOptions options = manyRays(256, 3);
+  options.ground_height = 0.0f;
+  const std::vector<VertexId> all = allVertices(plant);
+  std::vector<VertexId> some;
+  for (std::size_t i = 5; i < all.size(); i += 1 + all.size() / 200) some.push_back(all[i]);
+  const std::vector<glm::vec3> lit = traceAmbient(plant, some, options);
+  RayOptions sky_only = options;
+  sky_only.bounces = 0;
+  const std::vector<glm::vec3> direct = traceAmbient(plant, some, sky_only);  // by the same rays
+  Scene world;
+  world.items.emplace_back().plant = &plant;
+  const RayScene scene(world);
+  const RayStarts starts(plant, scene, 0.0f);
+  glm::dvec3 error(0.0), bias(0.0), mean(0.0);
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    Random random(i);
+    glm::vec3 passed(0.0f);
+    constexpr int kPaths = 2048;
+    followPaths(scene, starts, some[i], plant.meshes[some[i].mesh].normals[some[i].vertex], kPaths,
+                options.bounces, true, random,
+                [&](const glm::vec3&, const glm::vec3& throughput, int surfaces) {
+                  if (surfaces > 0) passed += throughput / static_cast<float>(kPaths);
+                });
+    const glm::dvec3 difference(lit[i] - direct[i] - passed);
+    error += difference * difference;
+    bias += difference;
+    mean += glm::dvec3(passed);
+  }
+  const auto n = static_cast<double>(some.size());
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_GT(mean[c] / n, 0.002);
+    EXPECT_LT(std::abs(bias[c]), most_bias * mean[c]) << mean[c] / n;
+    EXPECT_LT(std::sqrt(error[c] / n), most_rms * mean[c] / n) << mean[c] / n;
+  }
+}
+
+TEST(Ambient, IsTheLightOfWholePaths) {
+  expectLightOfPaths(ballTree(150, 0.5f, true), 0.05, 0.5);
+  GrowOptions options;
+  options.species = "quaking-aspen";
+  options.texture_size = 64;
+  options.set = {{"Levels", "2"}};
+  expectLightOfPaths(grow(options), 0.05, 0.5);
 }
 
 TEST(Ambient, TakesTheNormalsThatItIsGiven) {

@@ -204,6 +204,11 @@ TEST(RayScene, ACutQuadIsTheGeometryThatItLeaves) {
     ASSERT_EQ(a.has_value(), b.has_value());
     if (!a) continue;
     ++hits;
+    EXPECT_FALSE(cut.cutAt(*a));
+    RayHit other = *a;  // the quad's left half is cut: one corner of either triangle lies there
+    other.barycentric = {0.0f, 0.0f};
+    EXPECT_EQ(cut.cutAt(other),
+              plant.meshes[0].positions[plant.meshes[0].indices[3 * a->triangle]].x < 0.0f);
     EXPECT_NEAR(a->distance, b->distance, 1e-4f * b->distance + 1e-6f);
   }
   EXPECT_GT(hits, 100);
@@ -245,6 +250,10 @@ TEST(RayScene, InstancesEqualFlattenedGeometry) {
     EXPECT_EQ(p->mesh, q->mesh);
     EXPECT_NEAR(p->distance, q->distance, 1e-4f);
     EXPECT_LT(glm::length(p->normal - q->normal), 1e-3f);
+    for (const Hit& hit : {*p, *q}) {
+      const float cosine = glm::dot(hit.normal, glm::normalize(ray.direction));
+      EXPECT_TRUE(hit.front == (cosine < 0.0f) || std::abs(cosine) < 1e-4f);
+    }
     EXPECT_LT(glm::length(p->vertex_normal - q->vertex_normal), 1e-3f);
     EXPECT_LT(glm::length(p->reflectance - q->reflectance), 2e-2f);
   }
@@ -272,6 +281,7 @@ TEST(RayScene, TheNormalIsTheOutsideOfMirroredWood) {
       const std::optional<Hit> hit = rays.closestHit(ray);
       ASSERT_TRUE(hit);
       EXPECT_LT(hit->normal.x, 0.0f);
+      EXPECT_TRUE(hit->front);
       EXPECT_LT(hit->vertex_normal.x, 0.0f);
       EXPECT_LT(hit->distance, 4.0f);
     }

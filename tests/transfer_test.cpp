@@ -68,7 +68,7 @@ TEST(Transfer, ALoneLeafHasCosineLobesOnBothSides) {
   const glm::vec3 n = glm::normalize(glm::vec3(0.4f, 0.7f, -0.5f));
   const Plant plant = probe({0, 1, 0}, n);
   for (const int bands : {2, 5, 7}) {
-    const PlantTransfer t = bakeTransfer(plant, options(16384, bands));
+    const PlantTransfer t = bakeTransfer(plant, options(2048, bands));
     EXPECT_EQ(t.bands, bands);
     ASSERT_EQ(t.meshes.size(), 1u);
     ASSERT_EQ(t.meshes[0].front.size(), 3u * static_cast<std::size_t>(bands * bands) * 3u);
@@ -88,7 +88,7 @@ TEST(Transfer, UnderATranslucentSheetTheLobeOfItsUpperSideShinesThrough) {
   plant.materials[0].base_color = {0, 0, 0, 1};
   addSheet(plant, 4000.0f, -0.5f);  // black, below
   plant.meshes.back().material = 0;
-  const PlantTransfer t = bakeTransfer(plant, options(65536, 4, 1));
+  const PlantTransfer t = bakeTransfer(plant, options(4096, 4, 1));
   expectLobe(t.meshes[0].front, 4, 0, {0, 1, 0}, shared::leafTransmittance(color), 4e-3f);
   expectLobe(t.meshes[0].front_bounced, 3, 0, {0, 1, 0}, shared::leafTransmittance(color), 4e-3f);
   for (int i = 0; i < 16; ++i) EXPECT_EQ(coefficient(t.meshes[0].back, 4, 0, i).g, 0.0f);
@@ -96,7 +96,7 @@ TEST(Transfer, UnderATranslucentSheetTheLobeOfItsUpperSideShinesThrough) {
 
 TEST(Transfer, TheGroundReflectsItsLobeAndReceivesIts) {
   const Plant plant = probe({0, 6, 0}, {0, -1, 0});
-  TransferOptions o = options(32768);
+  TransferOptions o = options(4096);
   o.rays.ground_height = 0.5f;
   const PlantTransfer t = bakeTransfer(plant, o);
   expectLobe(t.meshes[0].front, 5, 0, {0, 1, 0}, shared::groundMeanColor(), 2e-3f);

@@ -35,7 +35,8 @@ struct RayOptions {
   /// for where the plant enters it. Not set: light comes from below too.
   std::optional<float> ground_height;
   std::uint32_t seed = 1;
-  std::size_t max_memory_bytes = std::size_t{8} << 30;  ///< of the rays' scene
+  /// Of the rays' scene; of the light that its surfaces pass on; of a result.
+  std::size_t max_memory_bytes = std::size_t{8} << 30;
   /// Called now and then with the share done in [0, 1], from one thread at a time. Returns whether
   /// to go on: after false the call throws Error.
   std::function<bool(double share)> progress;
@@ -63,8 +64,9 @@ std::vector<Openness> traceOpenness(const Plant& plant, std::span<const VertexId
 /// Ambient occlusion: the light that reaches a vertex's hemisphere, weighted by the cosine to its
 /// normal, from a world of even light 1, linear RGB (1 = open). Light is reflected diffusely by
 /// every surface and diffusely transmitted by leaves (shared::leafTransmittance); with bounces = 0
-/// it is the plain share of free sky. `normals`, if given, replace the mesh's own (light of this
-/// plant: a vertex whose crown normal looks out of the crown is lit from there). Throws as
+/// it is the plain share of free sky. With bounces the light that all surfaces of the plant pass on
+/// is found first, however few the vertices. `normals`, if given, replace the mesh's own (light of
+/// this plant: a vertex whose crown normal looks out of the crown is lit from there). Throws as
 /// traceOpenness.
 std::vector<glm::vec3> traceAmbient(const Plant& plant, std::span<const VertexId> vertices,
                                     const RayOptions& options = {},

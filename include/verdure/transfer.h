@@ -52,11 +52,11 @@ struct TransferOptions {
   int ground_size = 64;  ///< points along the ground's grid, 0 or 2 to 1024
 };
 
-/// Traces light to both sides of every leaf and the outside of wood, as occlusion.h has it: paths
-/// that leave the scene in direction d add Y_i(d) times their throughput to coefficient i. The
-/// light that surfaces pass on is thus that of every bounce, not of neighbours' vertices, and needs
-/// no memory but the result. Deterministic for any number of threads. Throws Error: options out of
-/// range, a result or scene over RayOptions::max_memory_bytes, cancelled.
+/// Traces light to both sides of every leaf and the outside of wood, as occlusion.h has it: rays
+/// that leave the scene in direction d add Y_i(d) to coefficient i, others the light that the
+/// surface they meet passes on (docs/transfer.md). Deterministic for any number of threads. Throws
+/// Error: options out of range; a scene, what its surfaces pass on, or a result over
+/// RayOptions::max_memory_bytes; cancelled.
 PlantTransfer bakeTransfer(const Plant& plant, const TransferOptions& options = {});
 
 /// The file beside a plant's file that holds its transfer: "oak.glb" has "oak.transfer".

@@ -149,8 +149,10 @@ void bakePopulation(const BakeCommand& command) {
     throw Error("--surface", "cannot be used with --population", "leave one of them out");
   if (command.rays.ambient != "density" || command.rays.transfer_bands > 0 ||
       command.bake.normals == "bent")
-    throw Error("--population", "cannot be used with rays (--ambient, --transfer, --normals bent)",
-                "bake each plant alone");
+    throw Error("--population",
+                "cannot be used with rays (--ambient, --transfer, --normals bent): they see one "
+                "plant without its neighbours",
+                "bake each plant alone, or leave the rays out");
   command.bake.fieldOr(BakeField::kMetaball);  // the optical-depth field knows no neighbours
   if (command.bake.fit.value_or(false))
     throw Error("--fit", "cannot be used with --population",
@@ -374,7 +376,14 @@ void runBake(const BakeCommand& command) {
   CrownLight light;
   Json report;
   std::string line;
-  {
+  const std::string& normals = command.bake.normals;
+  if (command.rays.ambient == "ray-traced" && (normals == "keep" || normals == "bent") &&
+      !parameters.fit.value_or(false) && !surface) {
+    // Rays give all that is written.
+    for (const Mesh& mesh : plant.meshes) light.meshes.emplace_back().normals = mesh.normals;
+    report = {{"kind", "none"}};
+    line = "no field";
+  } else {
     Progress progress("bake");
     if (field == BakeField::kMetaball) {
       showProgress(options, progress);

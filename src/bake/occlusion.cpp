@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <array>
 
-#include "bake/light_path.h"
 #include "bake/ray_bake.h"
+#include "bake/ray_directions.h"
+#include "bake/scene_light.h"
 #include "verdure/error.h"
 
 namespace verdure {
@@ -23,7 +24,7 @@ std::vector<Openness> traceOpenness(const Plant& plant, std::span<const VertexId
     throw Error(plant.name, "as many normals as vertices are needed", "give one for each");
   const RayBake bake(plant, options);
   std::vector<Openness> result(vertices.size());
-  bake.forEachVertex(vertices, [&](std::size_t i, Random& random) {
+  bake.forEachVertex(vertices, 0.0, 1.0, [&](std::size_t i, Random& random) {
     const ShiftedLattice lattice(options.rays, random);
     std::array<Ray, RayBake::kBatch> rays;
     std::array<std::uint8_t, RayBake::kBatch> free;
@@ -57,19 +58,28 @@ std::vector<Openness> traceOpenness(const Plant& plant, std::span<const VertexId
 std::vector<glm::vec3> traceAmbient(const Plant& plant, std::span<const VertexId> vertices,
                                     const RayOptions& options, const CrownLight* normals) {
   const RayBake bake(plant, options, normals);
+  SceneLight scene_light(plant, bake, options, 0);
+  const double patch_rays = scene_light.rayCount();
+  const double share = patch_rays / (patch_rays + static_cast<double>(vertices.size()) *
+                                                      static_cast<double>(options.rays));
+  scene_light.bounce(share);
   std::vector<glm::vec3> result(vertices.size());
-  const bool ground = options.ground_height.has_value();
-  bake.forEachVertex(vertices, [&](std::size_t i, Random& random) {
+  bake.forEachVertex(vertices, share, 1.0, [&](std::size_t i, Random& random) {
     const ShiftedLattice lattice(options.rays, random);
     const glm::mat3 axes = axesAround(bake.normalOf(vertices[i]));
+    float direct = 0.0f;
     glm::vec3 sum(0.0f);
-    for (int r = 0; r < options.rays; ++r) {
-      const glm::vec2 u = lattice.point(r);
-      const Ray ray = bake.starts.from(vertices[i], axes * cosineDirection(u.x, u.y));
-      followLight(bake.scene, ray, options.bounces, ground, random,
-                  [&](const glm::vec3&, const glm::vec3& throughput, int) { sum += throughput; });
+    std::array<SceneLight::Slot, RayBake::kBatch> met;
+    for (int first = 0; first < options.rays; first += RayBake::kBatch) {
+      std::size_t count = 0;
+      for (int r = first; r < std::min(first + RayBake::kBatch, options.rays); ++r) {
+        const glm::vec2 u = lattice.point(r);
+        met[count++] = scene_light.follow(
+            bake.starts.from(vertices[i], axes * cosineDirection(u.x, u.y)), &direct);
+      }
+      scene_light.gather({met.data(), count}, &sum.x);
     }
-    result[i] = sum / static_cast<float>(options.rays);
+    result[i] = (sum + direct) / static_cast<float>(options.rays);
   });
   return result;
 }

@@ -43,12 +43,12 @@ const glm::vec3& RayBake::normalOf(VertexId id) const {
                              : plant_.meshes[id.mesh].normals[id.vertex];
 }
 
-void RayBake::forEachVertex(std::span<const VertexId> vertices,
+void RayBake::forEachVertex(std::span<const VertexId> vertices, double begin, double end,
                             const std::function<void(std::size_t, Random&)>& body) const {
   for (const VertexId& id : vertices)
     if (id.mesh >= plant_.meshes.size() || id.vertex >= plant_.meshes[id.mesh].positions.size())
       throw Error(plant_.name, fmt::format("has no vertex {} of mesh {}", id.vertex, id.mesh));
-  run(vertices.size(), 0.0, 1.0, [&](std::size_t i) {
+  run(vertices.size(), begin, end, [&](std::size_t i) {
     const std::uint64_t number = (std::uint64_t{vertices[i].mesh} << 32) + vertices[i].vertex;
     Random random(hash(number ^ hash(options_.seed)));
     body(i, random);

@@ -23,11 +23,10 @@ class RayBake {
   RayBake& operator=(const RayBake&) = delete;
 
   /// body(i, random) for each vertex in parallel; the random stream depends on the seed and the
-  /// vertex alone.
-  void forEachVertex(std::span<const VertexId> vertices,
+  /// vertex alone. The share done that is told goes from `begin` to `end`.
+  void forEachVertex(std::span<const VertexId> vertices, double begin, double end,
                      const std::function<void(std::size_t i, Random& random)>& body) const;
-  /// body(i, random) for i in [0, count); `stream` keeps the random numbers of several loops apart.
-  /// The share done that is told goes from `begin` to `end`.
+  /// The same for i in [0, count); `stream` keeps the random numbers of several loops apart.
   void forEach(std::size_t count, std::uint64_t stream, double begin, double end,
                const std::function<void(std::size_t i, Random& random)>& body) const;
 

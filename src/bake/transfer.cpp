@@ -6,8 +6,9 @@
 #include <array>
 #include <glm/gtc/packing.hpp>
 
-#include "bake/light_path.h"
 #include "bake/ray_bake.h"
+#include "bake/ray_directions.h"
+#include "bake/scene_light.h"
 #include "verdure/error.h"
 #include "verdure/harmonics.h"
 
@@ -19,9 +20,8 @@ constexpr int kMostBounceBands = 3;
 /// The sums of one vertex and side: light that came straight, without colour, and bounced light of
 /// each channel.
 struct Sums {
-  using Values = std::array<float, kMaxBands * kMaxBands>;
-  Values direct{};
-  std::array<Values, 3> bounced{};
+  std::array<float, kMaxBands * kMaxBands> direct{};
+  std::array<float, 3 * kMaxBands * kMaxBands> bounced{};
 };
 
 void checkOptions(const TransferOptions& o) {
@@ -68,32 +68,42 @@ class Baker {
     layGround(transfer.ground);
     const auto ground_points = static_cast<std::size_t>(transfer.ground.size) *
                                static_cast<std::size_t>(transfer.ground.size);
-    const double share = static_cast<double>(vertices.size()) /
-                         std::max(1.0, static_cast<double>(vertices.size() + ground_points));
-    rays.forEach(vertices.size(), kVertexStream, 0.0, share, [&](std::size_t i, Random& random) {
-      const VertexId id = vertices[i];
-      TransferVectors& out = transfer.meshes[id.mesh];
-      const glm::vec3& n = rays.normalOf(id);
-      const auto start = [&](const glm::vec3& d) { return rays.starts.from(id, d); };
-      store(trace(rays.scene, n, start, random), id.vertex, out.front, out.front_bounced);
-      if (!out.back.empty())
-        store(trace(rays.scene, -n, start, random), id.vertex, out.back, out.back_bounced);
-    });
-    rays.forEach(ground_points, kGroundStream, share, 1.0, [&](std::size_t i, Random& random) {
-      GroundTransfer& ground = transfer.ground;
-      const auto size = static_cast<std::size_t>(ground.size);
-      const glm::vec2 at = ground.corner + ground.step * glm::vec2(static_cast<float>(i % size),
-                                                                   static_cast<float>(i / size));
-      const glm::vec3 up(0.0f, 1.0f, 0.0f);
-      Ray ray;
-      ray.origin = rays.scene.originOff({at.x, ground.height, at.y}, up);
-      const auto start = [&ray](const glm::vec3& d) {
-        ray.direction = d;
-        return ray;
-      };
-      store(trace(rays.scene, up, start, random), i, ground.vectors.front,
-            ground.vectors.front_bounced);
-    });
+    SceneLight light(plant_, rays, options_.rays, options_.bands);
+    std::size_t sides = ground_points;
+    for (const Mesh& mesh : plant_.meshes)
+      sides += mesh.positions.size() * (mesh.kind == PartKind::kFoliage ? 2 : 1);
+    const double own = static_cast<double>(sides) * options_.rays.rays;
+    const double patches = light.rayCount() / std::max(light.rayCount() + own, 1.0);
+    const double vertices_end = 1.0 - static_cast<double>(ground_points) * options_.rays.rays /
+                                          std::max(own, 1.0) * (1.0 - patches);
+    light.bounce(patches);
+    rays.forEach(vertices.size(), kVertexStream, patches, vertices_end,
+                 [&](std::size_t i, Random& random) {
+                   const VertexId id = vertices[i];
+                   TransferVectors& out = transfer.meshes[id.mesh];
+                   const glm::vec3& n = rays.normalOf(id);
+                   const auto start = [&](const glm::vec3& d) { return rays.starts.from(id, d); };
+                   store(trace(light, n, start, random), id.vertex, out.front, out.front_bounced);
+                   if (!out.back.empty())
+                     store(trace(light, -n, start, random), id.vertex, out.back, out.back_bounced);
+                 });
+    rays.forEach(
+        ground_points, kGroundStream, vertices_end, 1.0, [&](std::size_t i, Random& random) {
+          GroundTransfer& ground = transfer.ground;
+          const auto size = static_cast<std::size_t>(ground.size);
+          const glm::vec2 at =
+              ground.corner +
+              ground.step * glm::vec2(static_cast<float>(i % size), static_cast<float>(i / size));
+          const glm::vec3 up(0.0f, 1.0f, 0.0f);
+          Ray ray;
+          ray.origin = rays.scene.originOff({at.x, ground.height, at.y}, up);
+          const auto start = [&ray](const glm::vec3& d) {
+            ray.direction = d;
+            return ray;
+          };
+          store(trace(light, up, start, random), i, ground.vectors.front,
+                ground.vectors.front_bounced);
+        });
     return transfer;
   }
 
@@ -110,45 +120,32 @@ class Baker {
     return v;
   }
 
-  /// A square around the plant, its height wider on each side: beyond, the plant covers little sky.
   void layGround(GroundTransfer& ground) const {
     if (!options_.rays.ground_height || options_.ground_size == 0) return;
     ground.size = options_.ground_size;
     ground.height = *options_.rays.ground_height;
-    const Bounds box = bounds(plant_);
-    const float half = std::max(
-        {0.5f * std::max(box.size().x, box.size().z) + std::max(box.max.y - ground.height, 0.0f),
-         1e-3f});
-    ground.corner = glm::vec2(box.center().x, box.center().z) - half;
-    ground.step = 2.0f * half / static_cast<float>(ground.size - 1);
+    const GroundSquare square = groundSquare(plant_, ground.height);
+    ground.corner = square.corner;
+    ground.step = square.side / static_cast<float>(ground.size - 1);
     ground.vectors = emptyVectors(
         static_cast<std::size_t>(ground.size) * static_cast<std::size_t>(ground.size), false);
   }
 
   template <class Start>
-  Sums trace(const RayScene& scene, const glm::vec3& normal, const Start& start,
+  Sums trace(const SceneLight& light, const glm::vec3& normal, const Start& start,
              Random& random) const {
-    const RayOptions& o = options_.rays;
-    const ShiftedLattice lattice(o.rays, random);
+    const int rays = options_.rays.rays;
+    const ShiftedLattice lattice(rays, random);
     const glm::mat3 axes = axesAround(normal);
     Sums sums;
-    std::array<float, kMaxBands * kMaxBands> values;
-    for (int r = 0; r < o.rays; ++r) {
-      const glm::vec2 u = lattice.point(r);
-      followLight(scene, start(axes * cosineDirection(u.x, u.y)), o.bounces,
-                  o.ground_height.has_value(), random,
-                  [&](const glm::vec3& direction, const glm::vec3& throughput, int bounced) {
-                    harmonicsAt(direction, options_.bands, values.data());
-                    if (bounced == 0) {  // throughput is 1
-                      for (std::size_t i = 0; i < count_; ++i) sums.direct[i] += values[i];
-                      return;
-                    }
-                    for (std::size_t c = 0; c < 3; ++c) {
-                      const float share = throughput[static_cast<int>(c)];
-                      for (std::size_t i = 0; i < count_; ++i)
-                        sums.bounced[c][i] += values[i] * share;
-                    }
-                  });
+    std::array<SceneLight::Slot, RayBake::kBatch> met;
+    for (int first = 0; first < rays; first += RayBake::kBatch) {
+      std::size_t count = 0;
+      for (int r = first; r < std::min(first + RayBake::kBatch, rays); ++r) {
+        const glm::vec2 u = lattice.point(r);
+        met[count++] = light.follow(start(axes * cosineDirection(u.x, u.y)), sums.direct.data());
+      }
+      light.gather({met.data(), count}, sums.bounced.data());
     }
     return sums;
   }
@@ -159,10 +156,10 @@ class Baker {
     for (std::size_t c = 0; c < 3; ++c) {
       for (std::size_t i = 0; i < count_; ++i)
         all[(vertex * count_ + i) * 3 + c] =
-            glm::packHalf1x16((sums.direct[i] + sums.bounced[c][i]) * scale);
+            glm::packHalf1x16((sums.direct[i] + sums.bounced[3 * i + c]) * scale);
       for (std::size_t i = 0; i < bounce_count_; ++i)
         bounced[(vertex * bounce_count_ + i) * 3 + c] =
-            glm::packHalf1x16(sums.bounced[c][i] * scale);
+            glm::packHalf1x16(sums.bounced[3 * i + c] * scale);
     }
   }
 

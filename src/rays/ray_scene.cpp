@@ -68,13 +68,15 @@ struct PlantParts {
   std::size_t placements = 0;
   std::vector<Part> parts;
   std::vector<TexelGrid> textures;  ///< of each mesh's base colour, if it has one
-  std::vector<bool> textured, cut;
-  RTCScene scene = nullptr;  ///< null unless it is instanced
+  std::vector<bool> textured;
+  std::vector<const CutTable*> cuts;  ///< of each mesh; null: opaque
+  RTCScene scene = nullptr;           ///< null unless it is instanced
 };
 
 struct Placement3 {
   glm::mat4 world_from_plant{1.0f};
   glm::mat3 normal_matrix{1.0f};
+  bool mirrored = false;
 };
 
 std::string deviceError(RTCDevice device) {
@@ -148,7 +150,7 @@ struct RayScene::State {
   void attach(RTCScene scene, std::uint32_t id, const PlantParts& plant, const Part& part,
               const glm::mat4* transform) const;
   void commit(RTCScene scene) const;
-  RayHit located(const RTCHit& hit, float distance) const;
+  RayHit located(const RTCRayHit& query) const;
   std::optional<float> groundDistance(const Ray& ray) const;
 };
 
@@ -170,7 +172,7 @@ void RayScene::State::notePlants(const Scene& scene) {
     for (const glm::mat4& instance : item.world_from_plant) {
       const glm::mat4 m = worldFromPlant(scene, item, instance);
       const glm::mat3 linear(m);
-      places.push_back({m, glm::transpose(glm::inverse(linear))});
+      places.push_back({m, glm::transpose(glm::inverse(linear)), glm::determinant(linear) < 0.0f});
       for (int row = 0; row < 3; ++row)
         least_size = std::max(least_size, std::abs(linear[0][row]) * reach.x +
                                               std::abs(linear[1][row]) * reach.y +
@@ -190,7 +192,7 @@ void RayScene::State::splitPlant(PlantParts& p) {
     const bool textured = !mesh.uvs.empty() && material.base_color_texture >= 0;
     const bool cut = textured && material.alpha_mode != AlphaMode::kOpaque;
     p.textured.push_back(textured);
-    p.cut.push_back(cut);
+    p.cuts.push_back(nullptr);
     p.textures.push_back(textured ? TexelGrid(textureOf(plant, material.base_color_texture))
                                   : TexelGrid());
     if (mesh.triangleCount() == 0) continue;
@@ -202,6 +204,7 @@ void RayScene::State::splitPlant(PlantParts& p) {
     const float cutoff = textureCutoff(material);
     std::unique_ptr<CutTable>& table = cut_tables[{&texture, cutoff}];
     if (table == nullptr) table = std::make_unique<CutTable>(texture, cutoff);
+    p.cuts.back() = table.get();
     const auto uvsOf = [&mesh](std::size_t t) {
       const std::uint32_t* corner = &mesh.indices[3 * t];
       return std::array{mesh.uvs[corner[0]], mesh.uvs[corner[1]], mesh.uvs[corner[2]]};
@@ -317,13 +320,29 @@ void RayScene::State::build(const Scene& scene, const RaySceneOptions& options) 
   ground_height = scene.ground_height;
 }
 
-RayHit RayScene::State::located(const RTCHit& hit, float distance) const {
+RayHit RayScene::State::located(const RTCRayHit& query) const {
+  const RTCHit& hit = query.hit;
   const bool instanced = hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
   const TopGeometry& at = top_geometries[instanced ? hit.instID[0] : hit.geomID];
   const Part& part = plants[at.plant].parts[instanced ? hit.geomID : at.part];
-  return {distance,  {hit.u, hit.v},
-          at.item,   at.instance,
-          part.mesh, part.triangles.empty() ? hit.primID : part.triangles[hit.primID]};
+  const Placement3& place = placements[at.item][at.instance];
+  // The normal is that of the corners as they lie in the geometry: of an instance in the plant's
+  // own space, else in the world, where a mirror has turned it round.
+  glm::vec3 normal(hit.Ng_x, hit.Ng_y, hit.Ng_z);
+  if (instanced)
+    normal = place.normal_matrix * normal;
+  else if (place.mirrored)
+    normal = -normal;
+  RayHit result;
+  result.distance = query.ray.tfar;
+  result.barycentric = {hit.u, hit.v};
+  result.item = at.item;
+  result.instance = at.instance;
+  result.mesh = part.mesh;
+  result.triangle = part.triangles.empty() ? hit.primID : part.triangles[hit.primID];
+  result.front =
+      glm::dot(normal, glm::vec3(query.ray.dir_x, query.ray.dir_y, query.ray.dir_z)) < 0.0f;
+  return result;
 }
 
 std::optional<float> RayScene::State::groundDistance(const Ray& ray) const {
@@ -392,8 +411,7 @@ std::optional<RayHit> RayScene::trace(const Ray& ray) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcIntersect1(state_->top, &context, &query);
-  if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID)
-    return state_->located(query.hit, query.ray.tfar);
+  if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID) return state_->located(query);
   if (!ground) return std::nullopt;
   RayHit hit;
   hit.distance = *ground;
@@ -453,10 +471,21 @@ SurfacePoint RayScene::surfaceAt(const RayHit& hit, const Ray& ray) const {
   point.reflectance = glm::vec3(material.base_color);
   if (!mesh.uvs.empty()) point.uv = mixed(mesh.uvs);
   if (p.textured[hit.mesh])
-    point.reflectance *= p.textures[hit.mesh].color(point.uv, p.cut[hit.mesh]);
+    point.reflectance *= p.textures[hit.mesh].color(point.uv, p.cuts[hit.mesh] != nullptr);
   point.reflectance = glm::clamp(point.reflectance, 0.0f, 1.0f);
   point.foliage = mesh.kind == PartKind::kFoliage;
   return point;
+}
+
+bool RayScene::cutAt(const RayHit& point) const {
+  const PlantParts& p = state_->plants[state_->plant_of_item[point.item]];
+  const CutTable* table = p.cuts[point.mesh];
+  if (table == nullptr) return false;
+  const Mesh& mesh = p.plant->meshes[point.mesh];
+  const std::uint32_t* corner = &mesh.indices[3 * std::size_t{point.triangle}];
+  const float b = point.barycentric.x, c = point.barycentric.y;
+  return table->transparentAt(mesh.uvs[corner[0]] * (1.0f - b - c) + mesh.uvs[corner[1]] * b +
+                              mesh.uvs[corner[2]] * c);
 }
 
 glm::vec3 RayScene::originOff(const glm::vec3& position, const glm::vec3& normal) const {

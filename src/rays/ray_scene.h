@@ -31,6 +31,7 @@ struct RayHit {
   std::uint32_t instance = 0;   ///< index into the item's world_from_plant
   std::uint32_t mesh = 0;       ///< index into the plant's meshes
   std::uint32_t triangle = 0;   ///< of the mesh: corners are indices[3 * triangle ...]
+  bool front = true;            ///< whether the ray comes from the side of SurfacePoint::normal
   bool ground() const { return item == kNone; }
 };
 
@@ -92,6 +93,10 @@ class RayScene {
   void visibility(std::span<const Ray> rays, std::span<std::uint8_t> free) const;
 
   SurfacePoint surfaceAt(const RayHit& hit, const Ray& ray) const;
+
+  /// Whether the alpha cut takes a point of a triangle away, given by its item, instance, mesh,
+  /// triangle and barycentric coordinates.
+  bool cutAt(const RayHit& point) const;
 
   /// Where a ray starts that leaves a point of a surface towards the side of `normal` (unit, the
   /// triangle's, turned to that side): so little off the surface that rounding cannot put it on or

@@ -187,6 +187,9 @@ void runFidelityReport(const FidelityCommand& command);
 
 // Shared by the commands.
 
+/// bake --population.
+void bakePopulation(const BakeCommand& command);
+
 /// Throws Error unless a file can be written at `path` and its name ends in one of `extensions`.
 void checkOutput(const std::string& path, const std::vector<std::string>& extensions);
 /// "960x720" to two numbers. Throws Error.

@@ -128,6 +128,8 @@ void findLeaves(Plant& plant);
 struct MeshLight {
   std::vector<glm::vec3> normals;  ///< unit
   std::vector<float> ambient;      ///< coefficient in [1/255, 1], 1 = open
+  /// Of leaves: how much of the front and of the back is seen from around, [0, 1]; empty: unknown.
+  std::vector<glm::vec2> visibility = {};
 };
 
 /// The result of a bake: `meshes` runs parallel to Plant::meshes.

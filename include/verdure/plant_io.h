@@ -27,7 +27,8 @@ struct ExportOptions {
 };
 
 /// Writes glTF 2.0 (.glb, or .gltf with a .bin and textures beside it by extension). A plant that
-/// was loaded from glTF keeps its document: only NORMAL and `_AO` (and COLOR_1) change. `light`
+/// was loaded from glTF keeps its document: only NORMAL and `_AO` (and `_VISIBILITY`,
+/// COLOR_1) change. `light`
 /// may be null: then the plant is written as it is. Nodes that share a mesh under different light
 /// get copies of it, lit instances (EXT_mesh_gpu_instancing) become nodes, meshopt and draco
 /// compression is undone; normals that equal the plant's own stay as they are in the file. Atomic.

@@ -142,9 +142,10 @@ Json jsonOf(const Agreement& a) {
 void runBake(const BakeCommand& command) {
   checkOutput(command.output, {".glb", ".gltf"});
   if (!command.report.empty()) checkWritable(command.report);
-  if (command.rays.ambient != "density" && command.rays.ambient != "ray-traced")
+  if (command.rays.ambient != "density" && command.rays.ambient != "ray-traced" &&
+      command.rays.ambient != "leaf-visibility")
     throw Error("--ambient", fmt::format("'{}' is unknown", command.rays.ambient),
-                "use density or ray-traced");
+                "use density, ray-traced or leaf-visibility");
   if (command.rays.transfer_bands != 0) checkWritable(transferPath(command.output));
   if (fs::path(command.report).lexically_normal() == fs::path(command.output).lexically_normal())
     throw Error("--report", "names the output file", "choose another file");
@@ -200,6 +201,10 @@ void runBake(const BakeCommand& command) {
   for (const std::string& note : plant.notes) fmt::print("note: {}\n", note);
   fmt::print("{}: {}\n", command.output, line);
   if (!rays) return;
+  if (rays->seconds_visibility > 0.0)
+    fmt::print("leaves looked at from {} sides, {} rays each; mean ambient {:.2f} in {:.2f} s\n",
+               command.rays.directions, rays->rays, rays->mean_ambient, rays->seconds_visibility);
+  if (!(rays->seconds_ambient > 0.0 || rays->seconds_normals > 0.0 || rays->transfer)) return;
   fmt::print("traced {} rays a vertex, {} bounces", rays->rays, rays->bounces);
   if (rays->seconds_ambient > 0.0)
     fmt::print("; mean ambient {:.2f} in {:.2f} s", rays->mean_ambient, rays->seconds_ambient);

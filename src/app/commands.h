@@ -59,6 +59,7 @@ struct RayParameters {
   int rays = 256;
   int bounces = 3;
   int transfer_bands = 0;  ///< 0 = none
+  int directions = 64;     ///< of the leaves' visibility
 };
 
 struct BakeCommand {
@@ -206,8 +207,8 @@ float groundHeight(const Plant& plant);
 struct RayReport {
   std::optional<PlantTransfer> transfer;
   int rays = 0, bounces = 0;
-  double seconds_normals = 0, seconds_ambient = 0, seconds_transfer = 0;
-  double mean_ambient = 0;  ///< of the traced coefficients
+  double seconds_normals = 0, seconds_ambient = 0, seconds_visibility = 0, seconds_transfer = 0;
+  double mean_ambient = 0;  ///< of the coefficients that are written
 };
 /// Traces what the command asks for, if anything: open directions and ambient coefficients replace
 /// those of `light`.

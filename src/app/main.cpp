@@ -181,7 +181,7 @@ int run(int argc, char** argv) {
   constexpr const char* kRayGroup = "Rays";
   bake_app
       ->add_option("--ambient", bake.rays.ambient,
-                   "Ambient coefficients: density, or ray-traced (slower, true)")
+                   "Ambient coefficients: density, ray-traced (slower, true) or leaf-visibility")
       ->group(kRayGroup)
       ->capture_default_str();
   bake_app
@@ -189,6 +189,11 @@ int run(int argc, char** argv) {
                    "Trace transfer vectors of so many bands, 2 to 7, into OUTPUT's .transfer")
       ->check(CLI::Range(2, 7))
       ->group(kRayGroup);
+  bake_app
+      ->add_option("--directions", bake.rays.directions,
+                   "Of leaf-visibility: from how many sides leaves are looked at (6: the paper's)")
+      ->group(kRayGroup)
+      ->capture_default_str();
   bake_app->add_option("--rays", bake.rays.rays, "Rays of each vertex and side of a leaf")
       ->group(kRayGroup)
       ->capture_default_str();

@@ -7,6 +7,7 @@
 #include "app/commands.h"
 #include "base/progress.h"
 #include "verdure/error.h"
+#include "verdure/leaf_visibility.h"
 
 namespace verdure::app {
 namespace {
@@ -29,8 +30,9 @@ void bendNormals(const Plant& plant, const RayOptions& options, CrownLight& ligh
 std::optional<RayReport> traceLight(const BakeCommand& command, const Plant& plant,
                                     CrownLight& light) {
   const RayParameters& parameters = command.rays;
-  const bool ambient = parameters.ambient == "ray-traced", bent = command.bake.normals == "bent";
-  if (!ambient && !bent && parameters.transfer_bands == 0) return std::nullopt;
+  const bool ambient = parameters.ambient == "ray-traced", bent = command.bake.normals == "bent",
+             visible = parameters.ambient == "leaf-visibility";
+  if (!ambient && !bent && !visible && parameters.transfer_bands == 0) return std::nullopt;
   Progress progress("bake");
   const char* step = "";
   RayOptions options;
@@ -53,14 +55,24 @@ std::optional<RayReport> traceLight(const BakeCommand& command, const Plant& pla
     step = "ambient light";
     light = bakeAmbient(plant, options, &light);
     report.seconds_ambient = timer.lap();
-    std::size_t vertices = 0;
-    for (const MeshLight& mesh : light.meshes)
-      for (const float k : mesh.ambient) {
-        report.mean_ambient += static_cast<double>(k);
-        ++vertices;
-      }
-    if (vertices > 0) report.mean_ambient /= static_cast<double>(vertices);
   }
+  if (visible) {
+    step = "leaf visibility";
+    timer.lap();
+    LeafVisibilityOptions looks;
+    looks.directions = parameters.directions;
+    looks.rays = options.rays;
+    looks.progress = options.progress;
+    setLeafVisibility(plant, leafVisibility(plant, looks), light);
+    report.seconds_visibility = timer.lap();
+  }
+  std::size_t vertices = 0;
+  for (const MeshLight& mesh : light.meshes)
+    for (const float k : mesh.ambient) {
+      report.mean_ambient += static_cast<double>(k);
+      ++vertices;
+    }
+  if (vertices > 0) report.mean_ambient /= static_cast<double>(vertices);
   if (parameters.transfer_bands != 0) {
     step = "transfer";
     timer.lap();
@@ -83,6 +95,7 @@ std::string jsonOf(const RayReport& r) {
                                  {"seconds",
                                   {{"normals", r.seconds_normals},
                                    {"ambient", r.seconds_ambient},
+                                   {"visibility", r.seconds_visibility},
                                    {"transfer", r.seconds_transfer}}}};
   return json.dump(2);
 }

@@ -124,6 +124,7 @@ class DocumentBuilder {
       add("TANGENT", bytesOf(vertexTangents(mesh, normals)), "VEC4");
     if (light != nullptr && !light->ambient.empty()) {
       add("_AO", bytesOf(light->ambient), "SCALAR");
+      if (!light->visibility.empty()) add("_VISIBILITY", bytesOf(light->visibility), "VEC2");
       if (options_.color1) {
         attributes["COLOR_0"] = addAccessor(std::vector<std::uint8_t>(count * 4, 255), count,
                                             "VEC4", kUnsignedByte, kArrayBuffer, true);

@@ -16,6 +16,7 @@ struct PrimitiveLight {
   std::size_t primitive = 0;
   std::vector<glm::vec3> normals;
   std::vector<float> ambient;
+  std::vector<glm::vec2> visibility;
   std::vector<bool> used;  ///< elements that the primitive's triangles use; empty = all
 
   bool operator==(const PrimitiveLight&) const = default;
@@ -32,12 +33,14 @@ struct Sheet {
 
   bool accepts(std::size_t accessor, const PrimitiveLight& more) const {
     if (accessor != position_accessor || light.normals.empty() != more.normals.empty() ||
-        light.ambient.empty() != more.ambient.empty())
+        light.ambient.empty() != more.ambient.empty() ||
+        light.visibility.empty() != more.visibility.empty())
       return false;
     for (std::size_t i = 0; i < light.used.size(); ++i)
       if (light.used[i] && more.used[i] &&
           ((!light.normals.empty() && light.normals[i] != more.normals[i]) ||
-           (!light.ambient.empty() && light.ambient[i] != more.ambient[i])))
+           (!light.ambient.empty() && light.ambient[i] != more.ambient[i]) ||
+           (!light.visibility.empty() && light.visibility[i] != more.visibility[i])))
         return false;
     return true;
   }
@@ -47,6 +50,7 @@ struct Sheet {
       if (!more.used[i]) continue;
       if (!more.normals.empty()) light.normals[i] = more.normals[i];
       if (!more.ambient.empty()) light.ambient[i] = more.ambient[i];
+      if (!more.visibility.empty()) light.visibility[i] = more.visibility[i];
       light.used[i] = true;
     }
   }
@@ -150,6 +154,7 @@ class Relighter {
       if (has_normals && !from.vertex_of.empty()) keepOldNormals(primitive, local.normals);
     }
     if (!light.ambient.empty()) local.ambient.assign(from.accessor_count, 1.0f);
+    if (!light.visibility.empty()) local.visibility.assign(from.accessor_count, glm::vec2(1.0f));
     for (std::size_t i = 0; i < used; ++i) {
       const std::size_t v = from.vertex_of.empty() ? i : from.vertex_of[i];
       if (!local.used.empty()) local.used[v] = true;
@@ -160,6 +165,7 @@ class Relighter {
         if (length > 1e-30) local.normals[v] = glm::vec3(n / length);
       }
       if (!light.ambient.empty()) local.ambient[v] = light.ambient[k * used + i];
+      if (!light.visibility.empty()) local.visibility[v] = light.visibility[k * used + i];
     }
     return local;
   }
@@ -226,6 +232,9 @@ class Relighter {
       if (sheet.light.ambient.empty()) continue;
       writeAttribute(index, sheet, "_AO", "SCALAR", kFloat, false, bytesOf(sheet.light.ambient),
                      count, in_place);
+      if (!sheet.light.visibility.empty())
+        writeAttribute(index, sheet, "_VISIBILITY", "VEC2", kFloat, false,
+                       bytesOf(sheet.light.visibility), count, in_place);
       if (!options_.color1) continue;
       // COLOR_1 may not stand without a COLOR_0, which multiplies the base colour: white.
       const Json& first = document_.list("meshes")[index]["primitives"][sheet.primitives[0]];

@@ -18,7 +18,7 @@ void checkLight(const Plant& plant, const CrownLight& light, const std::string& 
     const MeshLight& mesh = light.meshes[i];
     const std::size_t count = plant.meshes[i].positions.size();
     const auto fits = [count](std::size_t size) { return size == 0 || size == count; };
-    if (!fits(mesh.normals.size()) || !fits(mesh.ambient.size()))
+    if (!fits(mesh.normals.size()) || !fits(mesh.ambient.size()) || !fits(mesh.visibility.size()))
       throw Error(where, "the light of part '" + plant.meshes[i].name + "' has another length",
                   "bake the light from this plant");
     for (const glm::vec3& n : mesh.normals)
@@ -33,6 +33,11 @@ void checkLight(const Plant& plant, const CrownLight& light, const std::string& 
                     "the light of part '" + plant.meshes[i].name +
                         "' has ambient coefficients outside [0, 1]",
                     "clamp them");
+    for (const glm::vec2& v : mesh.visibility)
+      if (!(v.x >= 0.0f && v.x <= 1.0f && v.y >= 0.0f && v.y <= 1.0f))
+        throw Error(
+            where, "the light of part '" + plant.meshes[i].name + "' has visibility outside [0, 1]",
+            "clamp it");
   }
 }
 

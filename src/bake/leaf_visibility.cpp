@@ -50,7 +50,9 @@ class Looker {
     std::vector<float> until;  // sums of the triangles' areas
     float area = 0.0f;
     for (std::uint32_t t = 0; t < leaf.triangle_count; ++t)
-      until.push_back(area += areaOf(leaf, t));
+      until.push_back(area +=
+                      static_cast<float>(areaOf(plant_.meshes[leaf.mesh],
+                                                plant_.leaf_triangles[leaf.first_triangle + t])));
     std::array<double, 2> seen{}, alone{};
     if (!(area > 0.0f)) return glm::vec2(1.0f);
     for (const glm::vec3& direction : directions)
@@ -75,14 +77,6 @@ class Looker {
   }
 
  private:
-  float areaOf(const Leaf& leaf, std::uint32_t t) const {
-    const Mesh& mesh = plant_.meshes[leaf.mesh];
-    const std::uint32_t* corner =
-        &mesh.indices[3 * std::size_t{plant_.leaf_triangles[leaf.first_triangle + t]}];
-    const glm::vec3& p = mesh.positions[corner[0]];
-    return glm::length(glm::cross(mesh.positions[corner[1]] - p, mesh.positions[corner[2]] - p));
-  }
-
   /// A random point that the alpha cut leaves; none of a leaf of which hardly anything is left.
   std::optional<SurfacePoint> pointOn(const Leaf& leaf, const std::vector<float>& until,
                                       Random& random) const {

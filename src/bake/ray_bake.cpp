@@ -25,6 +25,13 @@ Scene sceneOf(const Plant& plant, const RayOptions& options) {
 
 }  // namespace
 
+double areaOf(const Mesh& mesh, std::size_t triangle) {
+  const std::uint32_t* corner = &mesh.indices[3 * triangle];
+  const glm::vec3& p = mesh.positions[corner[0]];
+  return 0.5 * static_cast<double>(glm::length(
+                   glm::cross(mesh.positions[corner[1]] - p, mesh.positions[corner[2]] - p)));
+}
+
 RayBake::RayBake(const Plant& plant, const RayOptions& options, const CrownLight* normals)
     : plant_(plant),
       options_(options),

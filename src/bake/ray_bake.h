@@ -11,6 +11,9 @@
 
 namespace verdure {
 
+/// m^2.
+double areaOf(const Mesh& mesh, std::size_t triangle);
+
 /// What the bakes by rays share: the plant as a scene, where rays leave its vertices, and the loop
 /// over vertices.
 class RayBake {

@@ -47,13 +47,6 @@ glm::vec2 pointOfPart(std::uint32_t part, std::uint32_t n, const glm::vec2& insi
   return (corner + (part % 2 == 0 ? inside : 1.0f - inside)) / static_cast<float>(n);
 }
 
-double areaOf(const Mesh& mesh, std::size_t triangle) {
-  const std::uint32_t* corner = &mesh.indices[3 * triangle];
-  const glm::vec3& p = mesh.positions[corner[0]];
-  return 0.5 * static_cast<double>(glm::length(
-                   glm::cross(mesh.positions[corner[1]] - p, mesh.positions[corner[2]] - p)));
-}
-
 }  // namespace
 
 GroundSquare groundSquare(const Plant& plant, float height) {

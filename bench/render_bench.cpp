@@ -1,11 +1,14 @@
-// Does baked light cost anything at run time? Draws one scene with the standard model (leaf
-// normals, constant ambient) and with expressive light (baked normals and coefficient), in turns
-// within one run, and prints the medians of the GPU's frame times and their ratio. Usage:
-// render_bench [leaves = 10000] [frames = 31] [width = 1280] [height = 720]
+// What one way of lighting costs against another: draws one scene with both, in turns within one
+// run, and prints the medians of the GPU's frame times and their ratio. Usage:
+// render_bench [leaves = 10000] [frames = 31] [width = 1280] [height = 720] [A = standard]
+//   [B = expressive]
+// A and B are presets; PRESET:paper, PRESET:layers and PRESET:shadow-map are one with that source
+// of shadows.
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <string>
 #include <vector>
 
 #include "test_plants.h"
@@ -24,6 +27,24 @@ int argument(int argc, char** argv, int index, int otherwise) {
   return argc > index ? std::max(std::atoi(argv[index]), 1) : otherwise;
 }
 
+verdure::Terms termsOf(const std::string& name) {
+  using verdure::ShadowSource;
+  const std::size_t colon = name.find(':');
+  verdure::Terms terms = verdure::presetTerms(name.substr(0, colon));
+  if (colon == std::string::npos) return terms;
+  const std::string source = name.substr(colon + 1);
+  if (source == "paper")
+    terms.shadow_source = ShadowSource::kDepthPaper;
+  else if (source == "layers")
+    terms.shadow_source = ShadowSource::kDepthLayers;
+  else if (source == "shadow-map")
+    terms.shadow_source = ShadowSource::kShadowMap;
+  else
+    throw verdure::Error("render_bench", "no shadows come from \"" + source + "\"",
+                         "use paper, layers or shadow-map");
+  return terms;
+}
+
 int run(int argc, char** argv) {
   using namespace verdure;
   const int leaves = argument(argc, argv, 1, 10000), frames = argument(argc, argv, 2, 31);
@@ -40,32 +61,35 @@ int run(int argc, char** argv) {
   Renderer renderer;
   renderer.setScene(scene);
 
-  const char* const names[] = {"standard", "expressive"};
-  std::vector<double> shadow[2], color[2], tone[2];
+  const std::string names[] = {argc > 5 ? argv[5] : "standard", argc > 6 ? argv[6] : "expressive"};
+  const Terms terms[] = {termsOf(names[0]), termsOf(names[1])};
+  std::vector<double> shadow[2], color[2], tone[2], whole[2];
   double pack_ms = 0.0;
   for (int frame = -2; frame < frames; ++frame)  // two rounds to warm up
     for (int k = 0; k < 2; ++k) {
       const int which = (frame & 1) != 0 ? 1 - k : k;  // neither always goes first
-      view.terms = presetTerms(names[which]);
+      view.terms = terms[which];
       const FrameTimes times = renderer.render(view).times;
       pack_ms = times.pack_ms;
       if (frame < 0) continue;
       shadow[which].push_back(times.shadow_ms);
       color[which].push_back(times.color_ms);
       tone[which].push_back(times.tone_ms);
+      whole[which].push_back(times.shadow_ms + times.color_ms + times.tone_ms);
     }
   std::printf("%s, %d x %d, %zu triangles, %d frames each; pack and upload %.1f ms\n",
               renderer.deviceName().c_str(), view.width, view.height, triangleCount(tree), frames,
               pack_ms);
   for (int which = 0; which < 2; ++which)
-    std::printf("%-11s shadow %8.3f ms   color %8.3f ms   tone %8.3f ms\n", names[which],
-                median(shadow[which]), median(color[which]), median(tone[which]));
+    std::printf("%-22s shadow %8.3f ms   color %8.3f ms   tone %8.3f ms   whole %8.3f ms\n",
+                names[which].c_str(), median(shadow[which]), median(color[which]),
+                median(tone[which]), median(whole[which]));
   // Pairs of neighbouring frames share the machine's mood: the median of their ratios is steadier
   // than the ratio of the medians.
   std::vector<double> ratios;
-  for (std::size_t i = 0; i < color[0].size(); ++i) ratios.push_back(color[1][i] / color[0][i]);
-  std::printf("expressive / standard: %.4f (median of pairs), %.4f (medians)\n", median(ratios),
-              median(color[1]) / median(color[0]));
+  for (std::size_t i = 0; i < whole[0].size(); ++i) ratios.push_back(whole[1][i] / whole[0][i]);
+  std::printf("%s / %s, whole frames: %.4f (median of pairs), %.4f (medians)\n", names[1].c_str(),
+              names[0].c_str(), median(ratios), median(whole[1]) / median(whole[0]));
   return 0;
 }
 

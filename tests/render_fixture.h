@@ -154,7 +154,7 @@ inline glm::vec3 expectedLeafColor(const View& view, const glm::vec3& color, flo
   const glm::vec3 l = view.daylight.sun.direction;
   const glm::vec3 v = glm::normalize(view.camera.eye - point);
   return shared::illumination(view.daylight.sky->luminance({0, 1, 0}) * color * k, sunLight(view),
-                              1.0f, color * shared::diffuseFactor(normal, l),
+                              glm::vec3(1.0f), color * shared::diffuseFactor(normal, l),
                               shared::highlightStrength(look::kLeafGlossWidth),
                               shared::specularFactor(normal, l, v, look::kLeafExponent));
 }

@@ -20,6 +20,11 @@ struct Material {
   int base_color_texture = -1;  ///< index into Plant::textures (sRGB), -1 = none
   int normal_texture = -1;      ///< index into Plant::textures (linear, tangent space, +Y up)
   float normal_scale = 1.0f;
+  /// How many mean free paths thick a leaf is, 0 = unknown: thickness over attenuation distance of
+  /// KHR_materials_volume.
+  float optical_thickness = 0.0f;
+  int thickness_texture =
+      -1;  ///< index into Plant::textures (linear): its green channel times that
   AlphaMode alpha_mode = AlphaMode::kOpaque;
   float alpha_cutoff = 0.5f;
   bool double_sided = false;

@@ -27,17 +27,28 @@ enum class AmbientSource {
   kTransfer,  ///< the transfer vectors' for this sky and sun; kBaked where an item has none
 };
 
+/// How much of the sun reaches a surface behind others.
+enum class ShadowSource {
+  kShadowMap,    ///< all or nothing, by the depth of the nearest surface
+  kDepthPaper,   ///< leaves by (4) of Gumbau et al. 2008, all else as kDepthLayers
+  kDepthLayers,  ///< what the leaves in front let through, by depths and number of their layers
+  kDepthOrdered,
+};
+
 /// The terms of illumination model (1) of Luft et al. 2007, each with its switch, and light through
 /// leaves.
 struct Terms {
   NormalSource normal = NormalSource::kCrown;
   AmbientSource ambient_source = AmbientSource::kBaked;
   bool ambient = true;
-  bool diffuse = true;        ///< k_d (N.L)
-  bool specular = true;       ///< k_s (V.R)^n
-  bool shadow = true;         ///< S_i from the shadow map
+  bool diffuse = true;   ///< k_d (N.L)
+  bool specular = true;  ///< k_s (V.R)^n
+  bool shadow = true;    ///< S_i
+  ShadowSource shadow_source = ShadowSource::kShadowMap;
   bool textures = true;       ///< else a uniform matt colour of the material
   bool transmission = false;  ///< leaves show the light on their far side (shared/leaf.h)
+  /// Leaves scatter light within them, by their thickness: (6) of Gumbau et al. 2008.
+  bool scattering = false;
   /// Leaves and wood mirror the sky dimly; what they mirror is missing below (shared/gloss.h).
   bool gloss = false;
 };

@@ -53,7 +53,16 @@ vk::raii::Pipeline makeGraphicsPipeline(const Device& device, const GraphicsRequ
                                                       .depthCompareOp = request.depth_compare};
   using Component = vk::ColorComponentFlagBits;
   const vk::PipelineColorBlendAttachmentState attachment{
-      .colorWriteMask = Component::eR | Component::eG | Component::eB | Component::eA};
+      .blendEnable = request.blend == Blend::kMaxAndSum,
+      .srcColorBlendFactor = vk::BlendFactor::eOne,
+      .dstColorBlendFactor = vk::BlendFactor::eOne,
+      .colorBlendOp = vk::BlendOp::eMax,
+      .srcAlphaBlendFactor = vk::BlendFactor::eOne,
+      .dstAlphaBlendFactor = vk::BlendFactor::eOne,
+      .alphaBlendOp = vk::BlendOp::eAdd,
+      .colorWriteMask = request.blend == Blend::kNothing
+                            ? vk::ColorComponentFlags{}
+                            : Component::eR | Component::eG | Component::eB | Component::eA};
   const bool has_color = request.color != vk::Format::eUndefined;
   const vk::PipelineColorBlendStateCreateInfo blend{.attachmentCount = has_color ? 1u : 0u,
                                                     .pAttachments = &attachment};

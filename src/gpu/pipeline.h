@@ -13,8 +13,15 @@ using SpirV = std::span<const std::uint32_t>;
 /// Specialisation constants 0, 1, 2, ... of a shader: 32 bits each (booleans are 0 or 1).
 using Constants = std::vector<std::uint32_t>;
 
+/// How a fragment joins what the target holds.
+enum class Blend {
+  kReplace,
+  kNothing,    ///< is not written
+  kMaxAndSum,  ///< the larger colour, the sum of the alphas
+};
+
 /// What a graphics pipeline is made of; what is not listed is the same for all of verdure's
-/// pipelines (triangle lists, no culling, no blending, dynamic viewport and scissor).
+/// pipelines (triangle lists, no culling, dynamic viewport and scissor).
 struct GraphicsRequest {
   SpirV vertex;
   SpirV fragment = {};       ///< may be empty: depth only
@@ -28,6 +35,7 @@ struct GraphicsRequest {
   vk::CompareOp depth_compare = vk::CompareOp::eGreater;
   bool depth_write = true;
   float depth_bias_slope = 0.0f;  ///< 0 = no bias
+  Blend blend = Blend::kReplace;
 };
 
 vk::raii::Pipeline makeGraphicsPipeline(const Device& device, const GraphicsRequest& request);

@@ -175,6 +175,8 @@ class GltfImporter {
         plant().notes.push_back(who + ": its normal map uses other UVs than its colour; left out");
         m.normal_texture = -1;
       }
+      if (const Json* volume = extension(json, "KHR_materials_volume"))
+        readThickness(*volume, color, who, m);
       const std::string mode = readString(json, "alphaMode", "OPAQUE");
       m.alpha_mode = mode == "MASK"    ? AlphaMode::kMask
                      : mode == "BLEND" ? AlphaMode::kBlend
@@ -184,6 +186,20 @@ class GltfImporter {
       plant().materials.push_back(std::move(m));
       uvs_of_.push_back(color);
     }
+  }
+
+  /// A volume without attenuation is clear, and no leaf.
+  void readThickness(const Json& volume, const TextureUse& color, const std::string& who,
+                     Material& m) {
+    const double thickness = readNumber(document_, volume, "thicknessFactor", 0.0, who);
+    const double distance = readNumber(document_, volume, "attenuationDistance", 0.0, who);
+    if (!(thickness > 0.0 && distance > 0.0)) return;
+    m.optical_thickness = static_cast<float>(std::min(thickness / distance, 100.0));
+    const TextureUse map = readTexture(member(volume, "thicknessTexture"), who);
+    if (map.texture >= 0 && color.texture >= 0 && !map.sameUvs(color))
+      plant().notes.push_back(who + ": its thickness map uses other UVs than its colour; left out");
+    else
+      m.thickness_texture = map.texture;
   }
 
   /// Decodes the images that are used, in parallel; those that cannot be are left out and noted.
@@ -213,6 +229,8 @@ class GltfImporter {
         m.base_color_texture = kept[static_cast<std::size_t>(m.base_color_texture)];
       if (m.normal_texture >= 0)
         m.normal_texture = kept[static_cast<std::size_t>(m.normal_texture)];
+      if (m.thickness_texture >= 0)
+        m.thickness_texture = kept[static_cast<std::size_t>(m.thickness_texture)];
     }
   }
 

@@ -22,14 +22,15 @@ gpu::SetLayout makeFrameSet(const gpu::Device& device) {
   using Stage = vk::ShaderStageFlagBits;
   const Type image = Type::eCombinedImageSampler;
   return {device,
-          {Type::eUniformBuffer, image, image, image, image, image},
+          {Type::eUniformBuffer, image, image, image, image, image, image},
           Stage::eVertex | Stage::eFragment};
 }
 
 vk::raii::DescriptorSetLayout makeMaterialSet(const gpu::Device& device) {
   using Type = vk::DescriptorType;
   return gpu::makeSetLayout(device,
-                            std::array{Type::eCombinedImageSampler, Type::eCombinedImageSampler},
+                            std::array{Type::eCombinedImageSampler, Type::eCombinedImageSampler,
+                                       Type::eCombinedImageSampler},
                             vk::ShaderStageFlagBits::eFragment);
 }
 
@@ -160,6 +161,18 @@ void FrameDrawer::resize(const View& view) {
                                     .aspect = kDepthAspect});
     frame_set_.setTexture(1, *shadow_map_, *shadow_sampler_);
   }
+  // A single texel stands in where the leaves are in the shadow map.
+  const std::uint32_t foliage_size =
+      view.terms.shadow_source == ShadowSource::kShadowMap ? 1 : size;
+  if (!foliage_map_ || foliage_map_->request.width != foliage_size) {
+    using Usage = vk::ImageUsageFlagBits;
+    foliage_map_.reset();
+    foliage_map_ = gpu::makeTexture(*device_, {.format = FrameLayout::kFoliageDepth,
+                                               .width = foliage_size,
+                                               .height = foliage_size,
+                                               .usage = Usage::eColorAttachment | Usage::eSampled});
+    frame_set_.setTexture(6, *foliage_map_, *edge_sampler_);
+  }
 }
 
 const Harmonics& FrameDrawer::skyOf(const View& view) {
@@ -193,6 +206,7 @@ shared::FrameUniforms FrameDrawer::makeUniforms(const GpuScene& scene, const Vie
   const float haze = std::max(look::kHazeHalf * distance, look::kHazeHalfLeast_m);
   u.ground = glm::vec4(scene.groundHeight(), look::kGroundRadius * haze, haze, look::kGroundTile_m);
   u.ground_map = glm::vec4(ground_light_.place(), 0.0f);
+  u.leaf_tint = glm::vec4(scene.leafTint(), std::tan(view.daylight.sun.angular_radius));
   if (view.daylight.sky != nullptr && view.daylight.sky->formula() != nullptr)
     u.sky = *view.daylight.sky->formula();
   return u;
@@ -271,6 +285,8 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
   const shared::FrameUniforms uniforms = makeUniforms(scene, view, light, units);
   std::memcpy(uniforms_.memory.mapped(), &uniforms, sizeof(uniforms));
   const DrawKind kind = kindOf(view);
+  const bool depth_maps = view.terms.shadow_source != ShadowSource::kShadowMap;
+  if (depth_maps) light_depth_pass_.prepare(*device_, layout_, scene, view.terms);
   plant_pass_.prepare(*device_, layout_, scene, view.terms);
   backdrop_pass_.prepare(*device_, layout_, view.terms, kind, scene.ground());
 
@@ -280,7 +296,14 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
     sky_image_.record(commands);
     ground_light_.record(commands);
     if (!weights.empty()) transfer_pass_.record(commands, scene.transfer(), std::move(weights));
-    shadow_pass_.record(commands, layout_, *frame_set_, scene, *shadow_map_, view.terms.shadow);
+    if (depth_maps) {
+      light_depth_pass_.record(commands, layout_, *frame_set_, scene, *shadow_map_, *foliage_map_,
+                               view.terms);
+    } else {
+      shadow_pass_.record(commands, layout_, *frame_set_, scene, *shadow_map_, view.terms.shadow);
+      gpu::imageBarrier(commands, *foliage_map_->image, kColorAspect, gpu::Use::kUndefined,
+                        gpu::Use::kFragmentSampled);
+    }
     timers_.stamp(commands, 1);
     recordColor(commands, scene, view, kind);
     timers_.stamp(commands, 2);

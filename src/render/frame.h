@@ -10,6 +10,7 @@
 #include "render/frame_layout.h"
 #include "render/frame_light.h"
 #include "render/ground_light.h"
+#include "render/light_depth_pass.h"
 #include "render/plant_pass.h"
 #include "render/shadow_pass.h"
 #include "render/sky_image.h"
@@ -45,6 +46,7 @@ class FrameDrawer {
   FrameLayout layout_;
   TransferPass transfer_pass_;
   ShadowPass shadow_pass_;
+  LightDepthPass light_depth_pass_;
   PlantPass plant_pass_;
   BackdropPass backdrop_pass_;
   ExposurePass exposure_pass_;
@@ -60,7 +62,7 @@ class FrameDrawer {
   gpu::DescriptorSet frame_set_;
   SkyImage sky_image_;
   GroundLight ground_light_;
-  std::optional<gpu::Texture> shadow_map_;
+  std::optional<gpu::Texture> shadow_map_, foliage_map_;
   std::optional<Targets> targets_;
   std::shared_ptr<const Sky> known_sky_;
   Harmonics known_harmonics_;  ///< of it

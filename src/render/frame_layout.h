@@ -12,12 +12,14 @@ struct FrameLayout {
   /// and half the memory traffic of floats.
   static constexpr vk::Format kColor = vk::Format::eR16G16B16A16Sfloat;
   static constexpr vk::Format kDepth = vk::Format::eD32Sfloat;
+  /// Of the light depth map.
+  static constexpr vk::Format kFoliageDepth = vk::Format::eR16G16B16A16Sfloat;
   static constexpr vk::SampleCountFlagBits kSamples = vk::SampleCountFlagBits::e4;
 
   explicit FrameLayout(const gpu::Device& device);
 
   gpu::SetLayout frame_set;                    ///< as in src/shaders/frame_set.glsl
-  vk::raii::DescriptorSetLayout material_set;  ///< base colour, normal map
+  vk::raii::DescriptorSetLayout material_set;  ///< base colour, normal map, thickness
   vk::raii::PipelineLayout pipeline;           ///< both sets and DrawUniforms
 };
 

@@ -11,7 +11,8 @@ GpuScene::GpuScene(const gpu::Device& device, const PackedScene& packed,
       grounds_(packed.grounds),
       bounds_(packed.bounds),
       ground_(packed.ground),
-      ground_height_(packed.ground_height) {
+      ground_height_(packed.ground_height),
+      leaf_tint_(packed.leaf_tint) {
   using Usage = vk::BufferUsageFlagBits;
   gpu::Upload upload(device);
   const auto vertices = [&upload](const auto& data) {
@@ -48,7 +49,7 @@ GpuScene::GpuScene(const gpu::Device& device, const PackedScene& packed,
   if (packed.materials.empty()) return;
   const auto count = static_cast<std::uint32_t>(packed.materials.size());
   const vk::DescriptorPoolSize size{.type = vk::DescriptorType::eCombinedImageSampler,
-                                    .descriptorCount = 2 * count};
+                                    .descriptorCount = 3 * count};
   pool_ = device.raii().createDescriptorPool(
       {.flags = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
        .maxSets = count,
@@ -69,15 +70,15 @@ GpuScene::GpuScene(const gpu::Device& device, const PackedScene& packed,
     };
     const vk::DescriptorImageInfo base = describe(slot.base_color, slot.base_clamp);
     const vk::DescriptorImageInfo normal = describe(slot.normal_map, slot.normal_clamp);
-    vk::WriteDescriptorSet write{.dstSet = *material_sets_[i],
-                                 .dstBinding = 0,
-                                 .descriptorCount = 1,
-                                 .descriptorType = vk::DescriptorType::eCombinedImageSampler,
-                                 .pImageInfo = &base};
-    vk::WriteDescriptorSet second = write;
-    second.dstBinding = 1;
-    second.pImageInfo = &normal;
-    device.raii().updateDescriptorSets({write, second}, nullptr);
+    const vk::DescriptorImageInfo thickness = describe(slot.thickness_map, slot.thickness_clamp);
+    std::vector<vk::WriteDescriptorSet> writes;
+    for (const vk::DescriptorImageInfo* info : {&base, &normal, &thickness})
+      writes.push_back({.dstSet = *material_sets_[i],
+                        .dstBinding = static_cast<std::uint32_t>(writes.size()),
+                        .descriptorCount = 1,
+                        .descriptorType = vk::DescriptorType::eCombinedImageSampler,
+                        .pImageInfo = info});
+    device.raii().updateDescriptorSets(writes, nullptr);
   }
 }
 
@@ -110,6 +111,14 @@ std::vector<vk::VertexInputAttributeDescription> GpuScene::attributes() {
           {.location = 5, .binding = 3, .format = Format::eR32G32B32A32Sfloat, .offset = 32},
           {.location = 6, .binding = 4, .format = Format::eR16G16B16A16Sfloat, .offset = 0},
           {.location = 7, .binding = 4, .format = Format::eR16G16B16A16Sfloat, .offset = 8}};
+}
+
+std::vector<vk::VertexInputAttributeDescription> GpuScene::shapeAttributes() {
+  std::vector<vk::VertexInputAttributeDescription> shape = attributes();
+  std::erase_if(shape, [](const auto& attribute) {
+    return attribute.location == 1 || attribute.location > 5;
+  });
+  return shape;
 }
 
 }  // namespace verdure

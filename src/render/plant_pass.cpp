@@ -17,11 +17,15 @@ gpu::Constants constantsOf(const Draw& draw, const Terms& terms) {
   const AmbientSource source = terms.ambient_source == AmbientSource::kTransfer && !draw.transfer
                                    ? AmbientSource::kBaked
                                    : terms.ambient_source;
-  return termConstants(terms, {.ambient_source = source,
-                               .transmission = draw.foliage && terms.transmission,
-                               .flip_normal = draw.foliage && leaf_normals,
-                               .alpha_test = draw.alpha_test,
-                               .normal_map = draw.normal_map});
+  return termConstants(terms,
+                       {.ambient_source = source,
+                        .transmission = draw.foliage && terms.transmission,
+                        .flip_normal = draw.foliage && leaf_normals,
+                        .alpha_test = draw.alpha_test,
+                        .normal_map = draw.normal_map,
+                        .foliage = draw.foliage,
+                        .scattering = draw.foliage && terms.scattering,
+                        .thickness_map = draw.foliage && terms.scattering && draw.thickness_map});
 }
 
 /// Two vertex layouts: see GpuScene::bindings().

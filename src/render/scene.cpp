@@ -9,6 +9,7 @@
 #include "render/look.h"
 #include "scene/scene.h"
 #include "shared/density.h"
+#include "shared/foliage_shadow.h"
 #include "verdure/error.h"
 
 namespace verdure {
@@ -37,6 +38,7 @@ class Packer {
     for (const SceneItem& item : scene_.items) noteTextureUse(*item.plant);
     for (const SceneItem& item : scene_.items) packItem(item, any_baked);
     if (out_.draws.empty()) out_.bounds = {glm::vec3(-1.0f), glm::vec3(1.0f)};
+    if (leaf_tint_.w > 0.0) out_.leaf_tint = glm::dvec3(leaf_tint_) / leaf_tint_.w;
     std::stable_partition(out_.draws.begin(), out_.draws.end(),
                           [](const Draw& draw) { return !draw.foliage; });
     out_.ground = scene_.ground;
@@ -67,6 +69,8 @@ class Packer {
       const glm::mat4 rows = glm::transpose(worldFromPlant(scene_, item, instance));
       out_.instances.push_back({rows[0], rows[1], rows[2]});
     }
+    const std::size_t first_draw = out_.draws.size();
+    glm::dvec4 tint(0.0);
     for (std::size_t m = 0; m < plant.meshes.size(); ++m) {
       const MeshLight* light = item.light != nullptr ? &item.light->meshes[m] : nullptr;
       Draw draw = packMesh(plant, plant.meshes[m], light, any_baked);
@@ -79,8 +83,20 @@ class Packer {
       }
       draw.first_instance = first_instance;
       draw.instance_count = static_cast<std::uint32_t>(item.world_from_plant.size());
-      if (draw.index_count > 0 && draw.instance_count > 0) out_.draws.push_back(draw);
+      if (draw.index_count == 0 || draw.instance_count == 0) continue;
+      if (draw.foliage) {
+        draw.uniforms.leaf = glm::vec4(shared::leafTint(draw.uniforms.matt),
+                                       shared::leafOpticalDepth(draw.uniforms.matt));
+        tint += double(draw.index_count) * glm::dvec4(glm::dvec3(draw.uniforms.leaf), 1.0);
+      }
+      out_.draws.push_back(draw);
     }
+    // Wood stands in the shade of its own plant's leaves.
+    for (std::size_t d = first_draw; d < out_.draws.size(); ++d)
+      if (!out_.draws[d].foliage)
+        out_.draws[d].uniforms.leaf =
+            glm::vec4(tint.w > 0.0 ? glm::vec3(glm::dvec3(tint) / tint.w) : glm::vec3(1.0f), 0.0f);
+    leaf_tint_ += tint;
     growBounds(bounds(plant), first_instance);
   }
 
@@ -190,10 +206,18 @@ class Packer {
       slot.normal_map = addTexture({&texture.image, TextureJob::Kind::kLinear, 0.0f});
       slot.normal_clamp = {texture.clamp_u, texture.clamp_v};
     }
+    draw.thickness_map =
+        textured && material.optical_thickness > 0.0f && material.thickness_texture >= 0;
+    if (draw.thickness_map) {
+      const Texture& texture = textureOf(plant, material.thickness_texture);
+      slot.thickness_map = addTexture({&texture.image, TextureJob::Kind::kLinear, 0.0f});
+      slot.thickness_clamp = {texture.clamp_u, texture.clamp_v};
+    }
     draw.material = addMaterial(slot);
     const glm::vec3 mean = out_.textures[slot.base_color].mean_color;
     draw.uniforms.color = material.base_color;
-    draw.uniforms.matt = glm::vec4(glm::vec3(material.base_color) * mean, 1.0f);
+    draw.uniforms.matt =
+        glm::vec4(glm::vec3(material.base_color) * mean, material.optical_thickness);
     draw.uniforms.surface = glm::vec4(cutoff, material.normal_scale,
                                       draw.foliage ? look::kLeafGlossWidth : look::kWoodGlossWidth,
                                       draw.foliage ? look::kLeafExponent : look::kWoodExponent);
@@ -223,6 +247,7 @@ class Packer {
 
   const Scene& scene_;
   PackedScene out_;
+  glm::dvec4 leaf_tint_{0.0};  // sum over the foliage's indices; w = their number
   std::map<TextureJob, UsedTexels> used_;
   std::map<TextureJob, std::uint32_t> known_textures_;
 };

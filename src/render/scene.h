@@ -30,6 +30,7 @@ struct Draw {
   bool transfer = false;  ///< has transfer vectors
   bool alpha_test = false;
   bool normal_map = false;
+  bool thickness_map = false;
   std::uint32_t index_count = 0, first_index = 0;
   std::int32_t vertex_offset = 0;
   std::uint32_t instance_count = 0, first_instance = 0;
@@ -47,12 +48,14 @@ struct TextureJob {
 };
 
 /// The textures that a draw binds, and how they repeat. Index 0 of a texture is plain white (base
-/// colour) or flat (normal map).
+/// colour, thickness) or flat (normal map).
 struct MaterialSlot {
   std::uint32_t base_color = 0;
   std::uint32_t normal_map = 0;
+  std::uint32_t thickness_map = 0;
   std::array<bool, 2> base_clamp{};  ///< u, v
   std::array<bool, 2> normal_clamp{};
+  std::array<bool, 2> thickness_clamp{};
   auto operator<=>(const MaterialSlot&) const = default;
 };
 
@@ -80,6 +83,7 @@ struct PackedScene {
   Bounds bounds;  ///< of all instances
   bool ground = false;
   float ground_height = 0.0f;
+  glm::vec3 leaf_tint{1.0f};  ///< leafTint() of all foliage, mean over its vertices
 };
 
 /// Throws Error for a null plant, arrays of different lengths, indices out of range, transfer
@@ -87,7 +91,7 @@ struct PackedScene {
 PackedScene packScene(const Scene& scene);
 
 /// A packed scene on the GPU, with a descriptor set for each material (set 1: base colour, normal
-/// map).
+/// map, thickness).
 class GpuScene {
  public:
   GpuScene(const gpu::Device& device, const PackedScene& packed,
@@ -100,6 +104,7 @@ class GpuScene {
   const Bounds& bounds() const { return bounds_; }
   bool ground() const { return ground_; }
   float groundHeight() const { return ground_height_; }
+  const glm::vec3& leafTint() const { return leaf_tint_; }
   const std::vector<PackedGround>& grounds() const { return grounds_; }
   GpuTransfer& transfer() { return *transfer_; }
 
@@ -107,6 +112,8 @@ class GpuScene {
   /// transfer vectors (front, back). Without `transfer` every vertex reads the first one's light.
   static std::vector<vk::VertexInputBindingDescription> bindings(bool transfer);
   static std::vector<vk::VertexInputAttributeDescription> attributes();
+  /// Of these, positions, texture coordinates and instances.
+  static std::vector<vk::VertexInputAttributeDescription> shapeAttributes();
 
  private:
   gpu::Buffer positions_, leaf_normals_, crown_normals_, uvs_, indices_, instances_;
@@ -121,6 +128,7 @@ class GpuScene {
   Bounds bounds_;
   bool ground_ = false;
   float ground_height_ = 0.0f;
+  glm::vec3 leaf_tint_{1.0f};
 };
 
 }  // namespace verdure

@@ -13,21 +13,12 @@ constexpr std::uint32_t kFragment[] = {
 #include "shaders/shadow_pass.frag.inc"
 };
 
-/// Positions, texture coordinates and instances.
-std::vector<vk::VertexInputAttributeDescription> attributesOfShape() {
-  std::vector<vk::VertexInputAttributeDescription> attributes = GpuScene::attributes();
-  std::erase_if(attributes, [](const auto& attribute) {
-    return attribute.location == 1 || attribute.location > 5;
-  });
-  return attributes;
-}
-
 vk::raii::Pipeline makePipeline(const gpu::Device& device, const FrameLayout& layout, bool cut) {
   return gpu::makeGraphicsPipeline(device, {.vertex = kVertex,
                                             .fragment = cut ? gpu::SpirV(kFragment) : gpu::SpirV(),
                                             .layout = *layout.pipeline,
                                             .bindings = GpuScene::bindings(false),
-                                            .attributes = attributesOfShape(),
+                                            .attributes = GpuScene::shapeAttributes(),
                                             .depth = FrameLayout::kDepth,
                                             .depth_compare = vk::CompareOp::eLess,
                                             .depth_bias_slope = 1.5f});

@@ -12,6 +12,7 @@
 
 layout(set = 1, binding = 0) uniform sampler2D base_color;
 layout(set = 1, binding = 1) uniform sampler2D normal_map;
+layout(set = 1, binding = 2) uniform sampler2D thickness_map;
 layout(push_constant) uniform DrawBlock { DrawUniforms draw; };
 
 // Centroid: where a covered sample lies. At the edge of a small leaf the pixel's centre is outside,
@@ -27,16 +28,21 @@ layout(location = 5) centroid in vec3 back_light;
 layout(location = 6) flat in uint seed;
 layout(location = 0) out vec4 out_color;
 
+/// PCG's output hash.
+uint scrambled(uint value) {
+  uint random = value * 747796405u + 2891336453u;
+  random = ((random >> ((random >> 28u) + 4u)) ^ random) * 277803737u;
+  return (random >> 22u) ^ random;
+}
+
 /// Which of the four samples an alpha-cut surface covers. Written here rather than left to the
 /// fixed alpha-to-coverage, whose rounding differs between drivers: alpha is steepened to an edge
 /// about one pixel wide around the cutoff, and a fixed pattern of thresholds over the pixels
 /// (Jimenez 2014, interleaved gradient noise) makes the mean coverage of large areas exact. Each
-/// triangle shifts the pattern and turns the samples by its own random number (PCG's output hash):
+/// triangle shifts the pattern and turns the samples by its own random number:
 /// leaves behind each other would else cover the same samples, and many of them no more than one.
 int coverageMask(float alpha, float cutoff) {
-  uint random = seed * 747796405u + 2891336453u;
-  random = ((random >> ((random >> 28u) + 4u)) ^ random) * 277803737u;
-  random = (random >> 22u) ^ random;
+  uint random = scrambled(seed);
   float coverage = clamp((alpha - cutoff) / max(fwidth(alpha), 0.125) + 0.5, 0.0, 1.0);
   float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
   float threshold = fract(noise + float(random >> 8u) * exp2(-24.0));
@@ -55,6 +61,20 @@ vec3 mirroredLight(vec3 r, vec3 n, vec3 near, float k_a) {
   if (kAmbientSource == kBaked) return open * k_a;
   float unshadowed = luminanceOf(shIrradiance(n, frame.open_light));
   return open * (unshadowed > 0.0 ? min(luminanceOf(near) / unshadowed, 1.0) : 0.0);
+}
+
+/// (6): the outgoing distance is random, but always the same for a texel of the leaf; where texels
+/// are smaller than pixels, its mean.
+float scatteredInLeaf(vec3 color, vec2 uv_x, vec2 uv_y) {
+  float s_i = draw.matt.w > 0.0 ? draw.matt.w : leafOpticalDepth(color);
+  if (kThicknessMap) s_i *= textureGrad(thickness_map, uv, uv_x, uv_y).g;
+  vec2 size = vec2(textureSize(base_color, 0));
+  float footprint = max(length(uv_x * size), length(uv_y * size));
+  ivec2 texel = ivec2(floor(uv * size));
+  uint random = scrambled(uint(texel.x) + scrambled(uint(texel.y)));
+  float s_o = s_i * float(random >> 8u) * exp2(-24.0);
+  float detail = size.x > 1.0 ? clamp(2.0 - 2.0 * footprint, 0.0, 1.0) : 0.0;
+  return mix(meanScatteredLight(s_i), scatteredLight(s_i, s_o), detail);
 }
 
 void main() {
@@ -100,6 +120,7 @@ void main() {
   }
   vec3 ambient = near * color;
   vec3 diffuse = kDiffuse ? color * diffuseFactor(n, l) : vec3(0.0);
+  if (kScattering) diffuse *= scatteredInLeaf(color, uv_x, uv_y);
   if (kTransmission) {
     vec3 k_t = leafTransmittance(color);
     ambient += beyond * k_t;
@@ -112,10 +133,11 @@ void main() {
     if (kAmbient) ambient += mirrored * mirroredLight(reflect(-v, n), n, near, in_normal.w);
   }
   float specular = kSpecular ? specularFactor(n, l, v, draw.surface.w) : 0.0;
-  float visibility = 1.0;
+  vec3 visibility = vec3(1.0);
   if (kShadow && (diffuse != vec3(0.0) || specular > 0.0)) {
     vec3 face = cross(p_x, p_y);
-    visibility = sunVisibility(position, dot(face, face) > 0.0 ? normalize(face) : n);
+    visibility = sunVisibility(position, dot(face, face) > 0.0 ? normalize(face) : n,
+                               draw.leaf);
   }
   vec3 lit = illumination(ambient, frame.sun_light.rgb, visibility, diffuse,
                           highlightStrength(draw.surface.z), specular);

@@ -13,5 +13,11 @@ layout(constant_id = 9) const bool kFlipNormal = false;
 layout(constant_id = 10) const bool kAlphaTest = false;
 layout(constant_id = 11) const bool kNormalMap = false;
 layout(constant_id = 12) const bool kGloss = false;
+layout(constant_id = 13) const int kShadowSource = 0;
+layout(constant_id = 14) const bool kFoliage = false;
+layout(constant_id = 15) const bool kScattering = false;
+layout(constant_id = 16) const bool kThicknessMap = false;
 // AmbientSource of verdure/render.h.
 const int kConstant = 0, kSky = 1, kBaked = 2, kTransfer = 3;
+// ShadowSource.
+const int kShadowMap = 0, kDepthPaper = 1, kDepthLayers = 2, kDepthOrdered = 3;

@@ -25,17 +25,19 @@ struct FrameUniforms {
   vec4 ray_down;    ///< w = 2 / height, pixels
   vec4 ray_forward;
   vec4 open_light[9];  ///< shIrradiance() / pi by the open sky and the open ground
-  SkyFormula sky;      ///< kcd/m^2, where the sky has one
+  vec4 leaf_tint;  ///< leafTint() of the scene's foliage, mean; w = tangent of the disk's radius
+  SkyFormula sky;  ///< kcd/m^2, where the sky has one
 };
-SHARED_SIZE(FrameUniforms, 560);
+SHARED_SIZE(FrameUniforms, 576);
 
 /// Push constants of one draw.
 struct DrawUniforms {
-  vec4 color;    ///< linear RGB; w = alpha, both multiply the texture
-  vec4 matt;     ///< colour without textures: the material's mean
+  vec4 color;  ///< linear RGB; w = alpha, both multiply the texture
+  vec4 matt;   ///< colour without textures: the material's mean; w = optical thickness, 0 = unknown
   vec4 surface;  ///< alpha cutoff of the texture, normal map's scale, width of the gloss, exponent
+  vec4 leaf;     ///< leafTint() of the plant's foliage; w = leafOpticalDepth()
 };
-SHARED_SIZE(DrawUniforms, 48);
+SHARED_SIZE(DrawUniforms, 64);
 
 /// Push constants of tone_pass.
 struct ToneUniforms {

@@ -26,7 +26,7 @@ SHARED_FUNCTION float specularFactor(vec3 n, vec3 l, vec3 v, float exponent) {
 }
 
 /// The sum (1). `ambient` is I_a k_a; `diffuse` is k_d (N.L) + k_t (-N.L), one of which is 0.
-SHARED_FUNCTION vec3 illumination(vec3 ambient, vec3 sun_light, float visibility, vec3 diffuse,
+SHARED_FUNCTION vec3 illumination(vec3 ambient, vec3 sun_light, vec3 visibility, vec3 diffuse,
                                   float k_s, float specular) {
   return ambient + sun_light * visibility * (diffuse + vec3(k_s * specular));
 }

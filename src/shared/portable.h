@@ -32,6 +32,7 @@ using glm::exp;
 using glm::exp2;
 using glm::floor;
 using glm::length;
+using glm::log;
 using glm::log2;
 using glm::max;
 using glm::min;

@@ -1,0 +1,101 @@
+#include "render/light_depth_pass.h"
+
+namespace verdure {
+namespace {
+
+constexpr std::uint32_t kVertex[] = {
+#include "shaders/shadow_pass.vert.inc"
+};
+constexpr std::uint32_t kWood[] = {
+#include "shaders/shadow_pass.frag.inc"
+};
+constexpr std::uint32_t kFoliage[] = {
+#include "shaders/light_depth_pass.frag.inc"
+};
+
+gpu::Constants constantsOf(const Draw& draw, const Terms& terms) {
+  return termConstants({.textures = terms.textures},
+                       {.alpha_test = draw.alpha_test, .foliage = draw.foliage});
+}
+
+}  // namespace
+
+void LightDepthPass::prepare(const gpu::Device& device, const FrameLayout& layout,
+                             const GpuScene& scene, const Terms& terms) {
+  for (const Draw& draw : scene.draws()) {
+    gpu::Constants constants = constantsOf(draw, terms);
+    if (pipelines_.contains(constants)) continue;
+    gpu::GraphicsRequest request{.vertex = kVertex,
+                                 .constants = constants,
+                                 .layout = *layout.pipeline,
+                                 .bindings = GpuScene::bindings(false),
+                                 .attributes = GpuScene::shapeAttributes(),
+                                 .color = FrameLayout::kFoliageDepth,
+                                 .depth = FrameLayout::kDepth,
+                                 .depth_compare = vk::CompareOp::eLess};
+    if (draw.foliage) {
+      request.fragment = kFoliage;
+      request.depth_write = false;
+      request.blend = gpu::Blend::kMaxAndSum;
+    } else {
+      if (draw.alpha_test) request.fragment = kWood;
+      request.depth_bias_slope = 1.5f;
+      request.blend = gpu::Blend::kNothing;
+    }
+    pipelines_.emplace(std::move(constants), gpu::makeGraphicsPipeline(device, request));
+  }
+}
+
+void LightDepthPass::record(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,
+                            vk::DescriptorSet frame_set, const GpuScene& scene,
+                            const gpu::Texture& wood_map, const gpu::Texture& foliage_map,
+                            const Terms& terms) const {
+  const vk::ImageAspectFlags depth_aspect = vk::ImageAspectFlagBits::eDepth;
+  const vk::ImageAspectFlags color_aspect = vk::ImageAspectFlagBits::eColor;
+  gpu::imageBarrier(commands, *wood_map.image, depth_aspect, gpu::Use::kUndefined,
+                    gpu::Use::kDepthAttachment);
+  gpu::imageBarrier(commands, *foliage_map.image, color_aspect, gpu::Use::kUndefined,
+                    gpu::Use::kColorAttachment);
+  const vk::RenderingAttachmentInfo foliage{
+      .imageView = *foliage_map.view,
+      .imageLayout = vk::ImageLayout::eColorAttachmentOptimal,
+      .loadOp = vk::AttachmentLoadOp::eClear,
+      .storeOp = vk::AttachmentStoreOp::eStore,
+      .clearValue = vk::ClearValue(vk::ClearColorValue(std::array{0.0f, 0.0f, 0.0f, 0.0f}))};
+  const vk::RenderingAttachmentInfo wood{
+      .imageView = *wood_map.view,
+      .imageLayout = vk::ImageLayout::eDepthAttachmentOptimal,
+      .loadOp = vk::AttachmentLoadOp::eClear,
+      .storeOp = vk::AttachmentStoreOp::eStore,
+      .clearValue = vk::ClearValue(vk::ClearDepthStencilValue{.depth = 1.0f})};
+  const vk::Rect2D area{.extent = {wood_map.request.width, wood_map.request.height}};
+  commands.beginRendering({.renderArea = area,
+                           .layerCount = 1,
+                           .colorAttachmentCount = 1,
+                           .pColorAttachments = &foliage,
+                           .pDepthAttachment = &wood});
+  if (terms.shadow && !scene.draws().empty()) {
+    commands.setViewport(0, vk::Viewport{.width = static_cast<float>(area.extent.width),
+                                         .height = static_cast<float>(area.extent.height),
+                                         .maxDepth = 1.0f});
+    commands.setScissor(0, area);
+    scene.bindVertices(commands, NormalSource::kLeaf);
+    for (const Draw& draw : scene.draws()) {  // wood comes first
+      commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
+                            *pipelines_.at(constantsOf(draw, terms)));
+      commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout.pipeline, 0,
+                                  {frame_set, scene.materialSet(draw.material)}, nullptr);
+      commands.pushConstants<shared::DrawUniforms>(
+          *layout.pipeline, vk::ShaderStageFlagBits::eFragment, 0, draw.uniforms);
+      commands.drawIndexed(draw.index_count, draw.instance_count, draw.first_index,
+                           draw.vertex_offset, draw.first_instance);
+    }
+  }
+  commands.endRendering();
+  gpu::imageBarrier(commands, *wood_map.image, depth_aspect, gpu::Use::kDepthAttachment,
+                    gpu::Use::kFragmentSampled);
+  gpu::imageBarrier(commands, *foliage_map.image, color_aspect, gpu::Use::kColorAttachment,
+                    gpu::Use::kFragmentSampled);
+}
+
+}  // namespace verdure

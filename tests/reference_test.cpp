@@ -271,6 +271,19 @@ TEST(Reference, LooksThroughWhatIsNotSeen) {
   EXPECT_EQ(from(below).image.rgb, unseen_above.image.rgb);
 }
 
+TEST(Reference, SeesTheGroundUnderWhatIsNotSeenAndLiesOnIt) {
+  const Plant sheet =
+      Pieces().quad({0, 0.3f, 0}, {0, 0, 1.1f}, {1.3f, 0, 0}, glm::vec3(0.0f)).plant;
+  Scene scene = sceneOf(sheet, true);
+  scene.ground_height = 0.3f;
+  scene.items[0].seen = false;
+  Scene open = scene;
+  open.items.clear();
+  const ReferenceOptions o = options({{0.3f, 7.1f, 0.4f}, {0.1f, 0.3f, 0}, 0.1f}, 32, 32, 4);
+  const Daylight light = skyAlone(glm::vec3(2.0f));
+  EXPECT_EQ(renderReference(scene, light, o).image.rgb, renderReference(open, light, o).image.rgb);
+}
+
 /// A ball and leaves on the ground under Preetham's sky, the sun made larger so that chance finds
 /// it.
 struct SmallScene {

@@ -287,7 +287,7 @@ void runFidelityReport(const FidelityCommand& command) {
                   "different as can be.",
                   command.samples, renderer.deviceName()));
   const auto [width, height] = parseSize(command.size);
-  const int pixels = width * height;
+  const int pixels = width * height / 2;  // of each picture of the ground
   std::vector<std::string> labels;
   std::vector<Outcomes> all;
   std::vector<GroundPicture> ground;

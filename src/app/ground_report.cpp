@@ -140,7 +140,7 @@ class Measure {
     double sum = 0.0;
     for (const glm::vec3& e : truth.mean) {
       const float share = glm::dot(e, weights_);
-      shadow_.push_back(share < kShadowBelow);
+      shadow_.push_back(share > 0.0f && share < kShadowBelow);
       if (shadow_.back()) {
         sum += double{share};
         ++count_;
@@ -255,7 +255,9 @@ std::vector<GroundPicture> measureGround(const Subject& subject, int pixels, int
     picture.sun_alone = view.daylight.sky == nullptr;
     const std::string light = picture.sun_alone ? "sun alone" : "daylight";
     progress.show(fmt::format("{}: ground, reference, {}, {}", subject.name, sun.name, light));
-    const Truth truth = traceTruth(unseen(subject.scene(kCandidates[0])), view, samples);
+    // The sun through a crown is noisier than the sky.
+    const Truth truth = traceTruth(unseen(subject.scene(kCandidates[0])), view,
+                                   picture.sun_alone ? 2 * samples : samples);
     const Measure measure(truth, view);
     const float height_m = 2.0f * glm::length(view.camera.eye - view.camera.target) *
                            std::tan(0.5f * view.camera.vertical_fov);

@@ -13,7 +13,7 @@ namespace verdure::app {
 
 /// How far one candidate's irradiance on the ground is from the path tracer's. All are shares and,
 /// but for `open`, over the shadow: the pixels where the path tracer's irradiance is below 90 % of
-/// open ground's.
+/// open ground's and not 0, as it is inside the trunk.
 struct GroundError {
   double of_mean = 0.0;   ///< mean of |E - E_ref| over mean of E_ref
   double of_pixel = 0.0;  ///< mean of |E - E_ref| / E_ref

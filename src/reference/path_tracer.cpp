@@ -141,6 +141,10 @@ class PathTracer {
       // Another rounding may find the same triangle again, but a little farther each time.
       ray.t_min = std::nextafter(std::max(hit->distance, ray.t_min),
                                  std::numeric_limits<float>::infinity());
+      // What lies on the ground, as the ends of trunks do, must not take the ground away.
+      const float ground = (scene_.ground_height - ray.origin.y) / ray.direction.y;
+      if (scene_.ground && ray.direction.y < 0.0f && ray.t_min > ground)
+        return RayHit{.distance = ground};
     }
   }
 

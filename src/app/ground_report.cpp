@@ -18,6 +18,10 @@ namespace {
 constexpr float kShadowBelow = 0.9f, kOpenAbove = 0.99f;  ///< of open ground's irradiance
 /// Irradiances below this share of open ground's count as this much where one is divided by.
 constexpr float kLeastIrradiance = 1e-3f;
+/// The renderer shades a pixel's middle, the path tracer its area: the renderer draws this many
+/// pixels for one, along each side, and their mean is measured, as what reaches that patch of
+/// ground.
+constexpr int kFiner = 4;
 const glm::vec3 kLuma(0.2126f, 0.7152f, 0.0722f);
 
 /// From nearly straight above, the picture's x away from the sun, all of the plant's shadow.
@@ -60,6 +64,15 @@ using Irradiance = std::vector<glm::vec3>;
 Irradiance divided(const HdrImage& light, const HdrImage& open) {
   Irradiance out(light.rgb.size());
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = light.rgb[i] / open.rgb[i];
+  return out;
+}
+
+/// Each pixel the mean of kFiner x kFiner.
+HdrImage coarser(const HdrImage& fine) {
+  HdrImage out(fine.width / kFiner, fine.height / kFiner);
+  for (int y = 0; y < out.height * kFiner; ++y)
+    for (int x = 0; x < out.width * kFiner; ++x)
+      out.at(x / kFiner, y / kFiner) += fine.at(x, y) * (1.0f / (kFiner * kFiner));
   return out;
 }
 
@@ -217,8 +230,7 @@ std::vector<const Candidate*> groundCandidates() {
 std::vector<GroundPicture> measureGround(const Subject& subject, int pixels, int samples,
                                          Renderer& renderer, Page& page, Progress& progress) {
   const std::vector<const Candidate*> candidates = groundCandidates();
-  // Pictures by sun and light: candidates' ones are drawn by candidate, so that each scene is
-  // uploaded once.
+  // By sun and light; drawn by candidate, so that each scene is uploaded once.
   std::vector<View> views;
   for (const SunPosition& sun : kSuns)
     for (const bool sun_alone : {false, true}) {
@@ -228,9 +240,11 @@ std::vector<GroundPicture> measureGround(const Subject& subject, int pixels, int
   std::vector<std::vector<Irradiance>> drawn(candidates.size());
   std::vector<std::vector<double>> open_light(candidates.size());
   const auto draw = [&](const Candidate& candidate, std::vector<HdrImage>& out) {
-    for (View& view : views) {
+    for (View view : views) {
       view.terms = candidate.terms;
-      out.push_back(renderer.render(view).hdr);
+      view.width *= kFiner;
+      view.height *= kFiner;
+      out.push_back(coarser(renderer.render(view).hdr));
     }
   };
   for (std::size_t c = 0; c < candidates.size(); ++c) {
@@ -259,10 +273,10 @@ std::vector<GroundPicture> measureGround(const Subject& subject, int pixels, int
     const Truth truth = traceTruth(unseen(subject.scene(kCandidates[0])), view,
                                    picture.sun_alone ? 2 * samples : samples);
     const Measure measure(truth, view);
-    const float height_m = 2.0f * glm::length(view.camera.eye - view.camera.target) *
-                           std::tan(0.5f * view.camera.vertical_fov);
-    picture.shadow_m2 =
-        measure.count() * std::pow(double{height_m} / static_cast<double>(view.height), 2.0);
+    picture.patch_m = double{2.0f * glm::length(view.camera.eye - view.camera.target) *
+                             std::tan(0.5f * view.camera.vertical_fov)} /
+                      view.height;
+    picture.shadow_m2 = measure.count() * picture.patch_m * picture.patch_m;
     picture.shadow_light = measure.mean();
     const GroundError noise = measure.noise();
     picture.noise = noise.of_mean;
@@ -354,6 +368,7 @@ nlohmann::ordered_json groundJson(const std::vector<GroundPicture>& pictures) {
                       {"open_noise", picture.open_noise},
                       {"shadow_light", picture.shadow_light},
                       {"shadow_m2", picture.shadow_m2},
+                      {"patch_m", picture.patch_m},
                       {"open_light", picture.open_light}});
     }
   return rows;

@@ -26,6 +26,7 @@ struct GroundError {
 struct GroundPicture {
   std::string label;                ///< plant, sun
   bool sun_alone = false;           ///< under a black sky; else whole daylight
+  double patch_m = 0.0;             ///< side of the square over which irradiance is averaged
   double shadow_m2 = 0.0;           ///< area that is measured
   double shadow_light = 0.0;        ///< mean of E_ref there, of open ground's
   double noise = 0.0;               ///< of E_ref there: what of_mean would be of the truth itself

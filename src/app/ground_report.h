@@ -39,7 +39,8 @@ struct GroundPicture {
 std::vector<const Candidate*> groundCandidates();
 
 /// Looks from above, through the plant, at the ground in the reach of its shadow; adds the
-/// pictures to the page. `pixels` and `samples`: of each picture.
+/// pictures to the page. `pixels`: of each picture; `samples`: paths a pixel, twice as many for the
+/// sun alone.
 std::vector<GroundPicture> measureGround(const Subject& subject, int pixels, int samples,
                                          Renderer& renderer, Page& page, Progress& progress);
 

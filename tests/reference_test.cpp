@@ -222,11 +222,16 @@ TEST(Reference, ShinesThroughALeaf) {
   }
 }
 
+/// Light that a point of a white sky's ground keeps below a black square of half side `a`, `h`
+/// above it: form factor from a horizontal element below its centre, four times that below a corner
+/// (Howell's catalogue B-4).
+float keptBelowSquare(float a, float h) {
+  const float k = a / h, root = std::sqrt(1.0f + k * k);
+  return 1.0f - 4.0f / (2.0f * kPi) * 2.0f * (k / root) * std::atan(k / root);
+}
+
 TEST(Reference, LosesTheSkyBehindASquare) {
-  // A black square of half side a, h above the point: form factor from a horizontal element below
-  // its centre, four times that below a corner (Howell's catalogue B-4).
-  const float a = 0.8f, h = 1.0f, k = a / h, root = std::sqrt(1.0f + k * k);
-  const float hidden = 4.0f / (2.0f * kPi) * 2.0f * (k / root) * std::atan(k / root);
+  const float a = 0.8f, h = 1.0f;
   const Plant plant = Pieces()
                           .quad({0, 0, 0}, {0, 0, 50}, {50, 0, 0}, glm::vec3(0.5f))
                           .quad({0, h, 0}, {0, 0, a}, {a, 0, 0}, glm::vec3(0.0f))
@@ -234,9 +239,49 @@ TEST(Reference, LosesTheSkyBehindASquare) {
   const ReferencePicture picture =
       renderReference(sceneOf(plant), skyAlone(glm::vec3(2.0f)),
                       options(towards({0, 0, 0}, {6, 0.4f, 0}), 16, 16, 256));
-  EXPECT_NEAR(luminance(meanOf(picture.image)), double{1.0f - hidden},
+  EXPECT_NEAR(luminance(meanOf(picture.image)), double{keptBelowSquare(a, h)},
               5.0 * errorOfMean(picture) + 1e-4);
   EXPECT_LT(errorOfMean(picture), 0.004);
+}
+
+TEST(Reference, LooksThroughWhatIsNotSeen) {
+  // From above, through the square and a smaller one over it, which hides nothing more.
+  const float a = 0.8f, h = 1.0f;
+  const Plant plane = Pieces().quad({0, 0, 0}, {0, 0, 50}, {50, 0, 0}, glm::vec3(0.5f)).plant;
+  const Plant squares = Pieces()
+                            .quad({0, h, 0}, {0, 0, a}, {a, 0, 0}, glm::vec3(0.0f))
+                            .quad({0, 1.1f * h, 0}, {0, 0, a}, {a, 0, 0}, glm::vec3(0.0f))
+                            .plant;
+  Scene scene = sceneOf(plane);
+  scene.items.push_back({&squares});
+  const auto from = [&](const glm::vec3& eye) {
+    return renderReference(scene, skyAlone(glm::vec3(2.0f)),
+                           options(towards({0, 0, 0}, eye), 16, 16, 256));
+  };
+  EXPECT_EQ(meanOf(from({0.3f, 9, 0.2f}).image), glm::dvec3(0.0));
+  scene.items[1].seen = false;
+  const ReferencePicture through = from({0.3f, 9, 0.2f});
+  EXPECT_NEAR(luminance(meanOf(through.image)), double{keptBelowSquare(a, h)},
+              5.0 * errorOfMean(through) + 1e-4);
+  EXPECT_LT(errorOfMean(through), 0.004);
+  // What is seen in front of the unseen looks as ever, with the same random numbers to the bit.
+  const glm::vec3 below(0.3f, 0.9f, 0.2f);
+  const ReferencePicture unseen_above = from(below);
+  scene.items[1].seen = true;
+  EXPECT_EQ(from(below).image.rgb, unseen_above.image.rgb);
+}
+
+TEST(Reference, SeesTheGroundUnderWhatIsNotSeenAndLiesOnIt) {
+  const Plant sheet =
+      Pieces().quad({0, 0.3f, 0}, {0, 0, 1.1f}, {1.3f, 0, 0}, glm::vec3(0.0f)).plant;
+  Scene scene = sceneOf(sheet, true);
+  scene.ground_height = 0.3f;
+  scene.items[0].seen = false;
+  Scene open = scene;
+  open.items.clear();
+  const ReferenceOptions o = options({{0.3f, 7.1f, 0.4f}, {0.1f, 0.3f, 0}, 0.1f}, 32, 32, 4);
+  const Daylight light = skyAlone(glm::vec3(2.0f));
+  EXPECT_EQ(renderReference(scene, light, o).image.rgb, renderReference(open, light, o).image.rgb);
 }
 
 /// A ball and leaves on the ground under Preetham's sky, the sun made larger so that chance finds

@@ -205,6 +205,41 @@ TEST_F(Render, ShadowLiesWhereTheSunRaySays) {
   }
 }
 
+TEST_F(Render, WhatIsNotSeenStillCastsItsShadow) {
+  // Two cameras on one axis, above the card and below it, see the same ground.
+  const Plant card = horizontalCard(2.0f, 1.0f);
+  const Plant post = standingTube(0.05f, 0.0f, 0.5f);
+  Scene scene = itemScene(card, nullptr);
+  scene.items.push_back({&post, nullptr});
+  scene.ground = true;
+  View above = smallView(96, 96);
+  above.terms.textures = false;
+  above.terms.specular = false;
+  above.camera = {{0.1f, 12, 0.1f}, {0, 0, 0}, 0.1f};
+  setSun(above, 0.0f, 1.47f, {0.9f, 0.8f, 0.6f});
+  setFurnace(above, glm::vec3(0.1f));
+  View below = above;
+  below.camera.eye = 0.15f * above.camera.eye;
+  below.camera.vertical_fov = 2.0f * std::atan(std::tan(0.05f) / 0.15f);
+  renderer().setScene(scene);
+  const float card_light = luminanceAt(renderer().render(above).hdr, 48, 20);
+  const HdrImage from_below = renderer().render(below).hdr;
+  scene.items[0].seen = false;
+  renderer().setScene(scene);
+  const HdrImage through = renderer().render(above).hdr;
+  EXPECT_EQ(countDifferent(renderer().render(below).hdr, from_below, 0.0f), 0);
+  int shadowed = 0;
+  for (const glm::ivec2 at : {glm::ivec2(20, 48), glm::ivec2(80, 40), glm::ivec2(40, 80)}) {
+    expectPixel(through, at.x, at.y, from_below.at(at.x, at.y), 0.02f);
+    shadowed += luminanceAt(through, at.x, at.y) < 0.3f * card_light ? 1 : 0;
+  }
+  EXPECT_EQ(shadowed, 3);
+  // Without the card the same place is lit.
+  scene.items.erase(scene.items.begin());
+  renderer().setScene(scene);
+  EXPECT_GT(luminanceAt(renderer().render(above).hdr, 20, 48), 3.0f * luminanceAt(through, 20, 48));
+}
+
 TEST_F(Render, SurfacesDoNotShadeThemselves) {
   // No acne: single sheets and the lit side of a convex body have no shadow at any sun angle.
   View view = quadView();

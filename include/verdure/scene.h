@@ -27,6 +27,8 @@ struct SceneItem {
   const CrownLight* light = nullptr;
   std::vector<glm::mat4> world_from_plant{glm::mat4(1.0f)};
   const PlantTransfer* transfer = nullptr;  ///< may be null; of plants that stand unturned
+  /// False: the camera sees what is behind it; its shadow and the light off it stay.
+  bool seen = true;
 };
 
 /// Coordinates are relative to the origin of the first item's plant; a plant with another origin

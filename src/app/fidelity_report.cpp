@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/fidelity.h"
+#include "app/ground_report.h"
 #include "app/page.h"
 #include "base/files.h"
 #include "base/progress.h"
@@ -22,30 +24,6 @@ namespace verdure::app {
 namespace {
 
 constexpr float kDegree = static_cast<float>(M_PI / 180.0);
-constexpr float kTurbidity = 3.0f;
-
-/// A way to light a plant: a preset and, where it uses one, the bake of the crown.
-struct Candidate {
-  const char* name;
-  const char* preset;
-  bool optical_depth;  ///< the crown's light comes from it, else from the metaball field
-};
-constexpr std::array<Candidate, 4> kCandidates{{
-    {"standard", "standard", false},
-    {"expressive", "expressive", false},
-    {"expressive, optical depth", "expressive", true},
-    {"transfer", "transfer", true},
-}};
-
-struct SunPosition {
-  const char* name;
-  float azimuth_deg, elevation_deg;  // the camera looks from 35 degrees
-};
-constexpr std::array<SunPosition, 3> kSuns{{
-    {"low sun from the side", 105.0f, 8.0f},
-    {"sun behind the viewer", 10.0f, 35.0f},
-    {"high sun against the viewer", -160.0f, 60.0f},
-}};
 
 /// One candidate's picture of one plant under one sun.
 struct Outcome {
@@ -61,26 +39,12 @@ struct FieldCheck {
   Agreement of_metaball, of_depth;
 };
 
-/// A grown plant with all its light.
-struct Subject {
-  Plant plant;
-  DensityBake metaball;
-  DepthBake depth;
-  PlantTransfer transfer;
-  Scene scene(const Candidate& candidate) const {
-    Scene scene;
-    scene.items.push_back({&plant, candidate.optical_depth ? &depth.light : &metaball.light});
-    scene.items[0].transfer = &transfer;
-    return scene;
-  }
-};
-
 Subject makeSubject(const std::string& species, const FidelityCommand& command) {
   GrowOptions options;
   options.species = species;
   options.leaf_form = LeafForm::kCard;
   options.texture_size = 256;
-  Subject subject{grow(options), {}, {}, {}};
+  Subject subject{species, grow(options), {}, {}, {}};
   subject.metaball = bakeDensity(subject.plant);
   subject.depth = bakeOpticalDepth(subject.plant);
   TransferOptions transfer;
@@ -169,7 +133,8 @@ class SubjectPictures {
     view_.bloom = 0.0f;
   }
 
-  std::array<Outcomes, kSuns.size()> draw(const std::string& species, const Subject& subject) {
+  std::array<Outcomes, kSuns.size()> draw(const Subject& subject) {
+    const std::string& species = subject.name;
     const float aspect = static_cast<float>(view_.width) / static_cast<float>(view_.height);
     view_.camera =
         automaticCamera(subject.scene(kCandidates[0]), 35.0f * kDegree, 4.0f * kDegree, aspect);
@@ -183,7 +148,7 @@ class SubjectPictures {
     for (std::size_t c = 0; c < kCandidates.size(); ++c) {
       progress_->show(fmt::format("{}: {}", species, kCandidates[c].name));
       renderer_->setScene(subject.scene(kCandidates[c]));
-      view_.terms = presetTerms(kCandidates[c].preset);
+      view_.terms = kCandidates[c].terms;
       for (std::size_t s = 0; s < kSuns.size(); ++s)
         std::tie(pictures[c][s], outcomes[s][c].frame_ms) = frame(s);
     }
@@ -195,23 +160,18 @@ class SubjectPictures {
   }
 
  private:
-  static Daylight daylight(std::size_t sun) {
-    return preethamDaylight(kTurbidity, directionOf(kSuns[sun].azimuth_deg * kDegree,
-                                                    kSuns[sun].elevation_deg * kDegree));
-  }
-
   HdrImage reference(const Subject& subject, std::size_t sun) const {
     ReferenceOptions options;
     options.width = view_.width;
     options.height = view_.height;
     options.camera = view_.camera;
     options.samples = command_->samples;
-    return renderReference(subject.scene(kCandidates[0]), daylight(sun), options).image;
+    return renderReference(subject.scene(kCandidates[0]), kSuns[sun].daylight(), options).image;
   }
 
   /// The picture and its time.
   std::pair<HdrImage, double> frame(std::size_t sun) {
-    view_.daylight = daylight(sun);
+    view_.daylight = kSuns[sun].daylight();
     std::array<double, 3> times{};
     HdrImage image;
     for (double& time : times) {
@@ -326,8 +286,11 @@ void runFidelityReport(const FidelityCommand& command) {
                   "under the same sky, sun and exposure, on {}. FLIP: 0 = equal, 1 = as "
                   "different as can be.",
                   command.samples, renderer.deviceName()));
+  const auto [width, height] = parseSize(command.size);
+  const int pixels = width * height / 2;  // of each picture of the ground
   std::vector<std::string> labels;
   std::vector<Outcomes> all;
+  std::vector<GroundPicture> ground;
   nlohmann::ordered_json fields = nlohmann::ordered_json::array();
   std::vector<std::vector<std::string>> field_rows{
       {"plant", "metaball: RMS", "rank", "optical depth: RMS", "rank"}};
@@ -335,11 +298,14 @@ void runFidelityReport(const FidelityCommand& command) {
     progress.show(name + ": baking");
     const Subject subject = makeSubject(name, command);
     page.heading(name);
-    const auto outcomes = SubjectPictures(command, renderer, page, progress).draw(name, subject);
+    const auto outcomes = SubjectPictures(command, renderer, page, progress).draw(subject);
     for (std::size_t s = 0; s < kSuns.size(); ++s) {
       labels.push_back(fmt::format("{}, {}", name, kSuns[s].name));
       all.push_back(outcomes[s]);
     }
+    for (GroundPicture& picture :
+         measureGround(subject, pixels, command.samples, renderer, page, progress))
+      ground.push_back(std::move(picture));
     progress.show(name + ": openness");
     const FieldCheck check = checkFields(subject);
     page.beginRow();
@@ -377,14 +343,14 @@ void runFidelityReport(const FidelityCommand& command) {
       "Frame time, ms (median of three; on a software driver this says nothing about "
       "GPUs)");
   page.table(tableOf(labels, all, &Outcome::frame_ms, "{:.1f}"));
+  addGroundTables(page, ground);
   page.paragraph("Openness of leaf vertices against 512 rays each");
   page.table(field_rows);
   page.write();
-  const nlohmann::ordered_json json{{"device", renderer.deviceName()},
-                                    {"samples", command.samples},
-                                    {"closest", kCandidates[best].name},
-                                    {"pictures", jsonOf(labels, all)},
-                                    {"openness", fields}};
+  const nlohmann::ordered_json json{
+      {"device", renderer.deviceName()},   {"samples", command.samples},
+      {"closest", kCandidates[best].name}, {"pictures", jsonOf(labels, all)},
+      {"ground", groundJson(ground)},      {"openness", fields}};
   writeFile(page.folder() / "fidelity.json", json.dump(2) + "\n");
   progress.show("done");
   if (command.json)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <limits>
 
 #include "base/parallel.h"
 #include "base/progress.h"
@@ -75,7 +76,8 @@ const Sky& skyOf(const Daylight& lights) {
 class PathTracer {
  public:
   PathTracer(const Scene& scene, const Daylight& lights, const ReferenceOptions& options)
-      : options_(options),
+      : scene_(scene),
+        options_(options),
         rays_(scene),
         surfaces_(scene, rays_, options.normal_maps, options.gloss),
         sky_(skyOf(lights)),
@@ -102,7 +104,7 @@ class PathTracer {
     glm::vec3 light(0.0f), throughput(1.0f);
     float density = 0.0f;  // with which the last surface chose the ray
     for (int depth = 0;; ++depth) {
-      const std::optional<RayHit> hit = rays_.trace(ray);
+      const std::optional<RayHit> hit = depth == 0 ? firstSeen(ray) : rays_.trace(ray);
       if (!hit) {
         light +=
             throughput * (depth == 0 ? seenSky(ray.direction) : foundSky(ray.direction, density));
@@ -126,12 +128,26 @@ class PathTracer {
         if (random.uniform() >= survival) return light;
         throughput /= survival;
       }
-      ray.origin = originTowards(point, next->direction);
-      ray.direction = next->direction;
+      ray = {originTowards(point, next->direction), 0.0f, next->direction};
     }
   }
 
  private:
+  /// What the eye sees along a ray, which then starts behind all that it does not see.
+  std::optional<RayHit> firstSeen(Ray& ray) const {
+    for (;;) {
+      std::optional<RayHit> hit = rays_.trace(ray);
+      if (!hit || hit->ground() || scene_.items[hit->item].seen) return hit;
+      // Another rounding may find the same triangle again, but a little farther each time.
+      ray.t_min = std::nextafter(std::max(hit->distance, ray.t_min),
+                                 std::numeric_limits<float>::infinity());
+      // What lies on the ground, as the ends of trunks do, must not take the ground away.
+      const float ground = (scene_.ground_height - ray.origin.y) / ray.direction.y;
+      if (scene_.ground && ray.direction.y < 0.0f && ray.t_min > ground)
+        return RayHit{.distance = ground};
+    }
+  }
+
   glm::vec3 originTowards(const SurfaceModel::Point& point, const glm::vec3& direction) const {
     const glm::vec3& side = point.scatterer.side;
     return rays_.originOff(point.position, glm::dot(direction, side) > 0.0f ? side : -side);
@@ -181,6 +197,7 @@ class PathTracer {
     return sum;
   }
 
+  const Scene& scene_;
   const ReferenceOptions& options_;
   RayScene rays_;
   SurfaceModel surfaces_;

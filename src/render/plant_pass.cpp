@@ -38,6 +38,7 @@ std::pair<bool, gpu::Constants> keyOf(const Draw& draw, const Terms& terms) {
 void PlantPass::prepare(const gpu::Device& device, const FrameLayout& layout, const GpuScene& scene,
                         const Terms& terms) {
   for (const Draw& draw : scene.draws()) {
+    if (!draw.seen) continue;
     auto key = keyOf(draw, terms);
     if (pipelines_.contains(key)) continue;
     vk::raii::Pipeline pipeline =
@@ -60,6 +61,7 @@ void PlantPass::record(const vk::raii::CommandBuffer& commands, const FrameLayou
   if (scene.draws().empty()) return;
   scene.bindVertices(commands, terms.normal);
   for (const Draw& draw : scene.draws()) {
+    if (!draw.seen) continue;
     commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipelines_.at(keyOf(draw, terms)));
     commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout.pipeline, 0,
                                 {frame_set, scene.materialSet(draw.material)}, nullptr);

@@ -81,6 +81,7 @@ class Packer {
                      static_cast<std::uint32_t>(draw.vertex_offset), kTransferWords,
                      plant.name + ", mesh " + plant.meshes[m].name, out_.transfers);
       }
+      draw.seen = item.seen;
       draw.first_instance = first_instance;
       draw.instance_count = static_cast<std::uint32_t>(item.world_from_plant.size());
       if (draw.index_count == 0 || draw.instance_count == 0) continue;

@@ -31,6 +31,7 @@ struct Draw {
   bool alpha_test = false;
   bool normal_map = false;
   bool thickness_map = false;
+  bool seen = true;  ///< else it is drawn into the shadow map alone
   std::uint32_t index_count = 0, first_index = 0;
   std::int32_t vertex_offset = 0;
   std::uint32_t instance_count = 0, first_instance = 0;

@@ -14,4 +14,4 @@ layout(constant_id = 10) const bool kAlphaTest = false;
 layout(constant_id = 11) const bool kNormalMap = false;
 layout(constant_id = 12) const bool kGloss = false;
 // AmbientSource of verdure/render.h.
-const int kConstant = 0, kSky = 1, kBaked = 2, kTransfer = 3;
+const int kConstant = 0, kSky = 1, kBaked = 2, kTransfer = 3, kLeafVisibility = 4;

@@ -105,6 +105,7 @@ struct RenderCommand : SceneOptions {
   DaylightOptions daylight;
   ExposureOptions exposure;
   int bands = 5;
+  float visibility_exponent = 1.0f;
   std::string background;
   int shadow_map = 2048;
   DeviceOptions device;
@@ -198,7 +199,7 @@ std::pair<int, int> parseSize(const std::string& text);
 /// Comma-separated numbers; throws Error unless there are `count` of them (0: any).
 std::vector<float> parseNumbers(const std::string& option, const std::string& text,
                                 std::size_t count);
-/// The light that a file brought along in `_AO` and NORMAL, if it has any.
+/// The light that a file brought along in `_AO`, `_VISIBILITY` and NORMAL, if it has any.
 std::optional<CrownLight> lightOfFile(const Plant& plant);
 /// Where a plant stands: on the zero of its own heights, where strands may hang below it; one that
 /// was modelled around or away from it stands on its lowest point.

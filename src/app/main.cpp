@@ -221,6 +221,10 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   render_app->add_option("--bands", render.bands, "Bands of harmonics of the sky's light, 2 to 7")
       ->capture_default_str();
+  render_app
+      ->add_option("--visibility-exponent", render.visibility_exponent,
+                   "Of leaf visibility: above 1 leaves darken rapidly inwards, below slowly")
+      ->capture_default_str();
   render_app->add_option("--background", render.background, "R,G,B in [0, 1] instead of the sky");
   render_app->add_option("--shadow-map", render.shadow_map, "Side of the shadow map, pixels")
       ->capture_default_str();

@@ -192,9 +192,11 @@ int run(int argc, char** argv) {
   bake_app
       ->add_option("--directions", bake.rays.directions,
                    "Of leaf-visibility: from how many sides leaves are looked at (6: the paper's)")
+      ->check(CLI::Range(2, 4096))
       ->group(kRayGroup)
       ->capture_default_str();
   bake_app->add_option("--rays", bake.rays.rays, "Rays of each vertex and side of a leaf")
+      ->check(CLI::Range(1, 65536))
       ->group(kRayGroup)
       ->capture_default_str();
   bake_app->add_option("--bounces", bake.rays.bounces, "Most surfaces that light meets on its way")

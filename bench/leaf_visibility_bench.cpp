@@ -1,7 +1,7 @@
 // Leaf visibility by rays from the leaves beside the way of its paper, pictures along the axes in
 // which every pixel knows the nearest leaf, in the same run: leaf_visibility_bench [species]
-// [seed]. Both are compared with many rays along the same axes, and from all around, which is what
-// the axes stand for.
+// [seed] [many]. Both are compared with `many` rays along the same axes, and from all around, which
+// is what the axes stand for.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -136,7 +136,7 @@ Visibility byRays(const Plant& plant, int directions, int rays, std::uint32_t se
   return leafVisibility(plant, options);
 }
 
-void run(const std::string& species, std::uint32_t seed, LeafForm form) {
+void run(const std::string& species, std::uint32_t seed, int many, LeafForm form) {
   GrowOptions options;
   options.species = species;
   options.seed = seed;
@@ -166,8 +166,7 @@ void run(const std::string& species, std::uint32_t seed, LeafForm form) {
       way.best_cpu = std::min(way.best_cpu, static_cast<double>(std::clock() - before) /
                                                 static_cast<double>(CLOCKS_PER_SEC));
     }
-  constexpr int kMany = 2048;
-  const Visibility axes = byRays(plant, 6, kMany, 2), all = byRays(plant, kMany, kMany, 2);
+  const Visibility axes = byRays(plant, 6, many, 2), all = byRays(plant, many, many, 2);
   fmt::print("{:22} {:>10} {:>9} {:>7} {:>7} {:>11} {:>11}\n", "way", "directions", "rays/leaf",
              "ms", "CPU ms", "RMS, 6 axes", "RMS, around");
   for (const Way& way : ways)
@@ -183,6 +182,7 @@ int main(int argc, char** argv) {
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
   const std::string species = argc > 1 ? argv[1] : "black-oak";
   const auto seed = static_cast<std::uint32_t>(argc > 2 ? std::atoi(argv[2]) : 4);
-  verdure::run(species, seed, verdure::LeafForm::kCard);
-  verdure::run(species, seed, verdure::LeafForm::kMesh);
+  const int many = argc > 3 ? std::atoi(argv[3]) : 2048;
+  verdure::run(species, seed, many, verdure::LeafForm::kMesh);
+  verdure::run(species, seed, many, verdure::LeafForm::kCard);
 }

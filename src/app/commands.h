@@ -56,7 +56,7 @@ struct BakeParameters {
 
 struct RayParameters {
   std::string ambient = "density";
-  int rays = 256;
+  std::optional<int> rays;  ///< unset: as RayOptions, LeafVisibilityOptions
   int bounces = 3;
   int transfer_bands = 0;  ///< 0 = none
   int directions = 64;     ///< of the leaves' visibility
@@ -208,6 +208,7 @@ float groundHeight(const Plant& plant);
 struct RayReport {
   std::optional<PlantTransfer> transfer;
   int rays = 0, bounces = 0;
+  int leaf_rays = 0;  ///< of the leaves' visibility
   double seconds_normals = 0, seconds_ambient = 0, seconds_visibility = 0, seconds_transfer = 0;
   double mean_ambient = 0;  ///< of the coefficients that are written
 };

@@ -195,10 +195,12 @@ int run(int argc, char** argv) {
       ->check(CLI::Range(2, 4096))
       ->group(kRayGroup)
       ->capture_default_str();
-  bake_app->add_option("--rays", bake.rays.rays, "Rays of each vertex and side of a leaf")
+  bake_app
+      ->add_option("--rays", bake.rays.rays,
+                   "Rays of each vertex and side of a leaf (default: 256), or of each leaf for "
+                   "leaf-visibility (default: 64)")
       ->check(CLI::Range(1, 65536))
-      ->group(kRayGroup)
-      ->capture_default_str();
+      ->group(kRayGroup);
   bake_app->add_option("--bounces", bake.rays.bounces, "Most surfaces that light meets on its way")
       ->group(kRayGroup)
       ->capture_default_str();

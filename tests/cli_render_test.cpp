@@ -143,6 +143,36 @@ TEST_F(CommandLineRender, StandsOnZeroWhereAStrandHangsBelow) {
   EXPECT_GT(difference(standing, picture(path("around.glb"), view)), 5.0);
 }
 
+TEST_F(CommandLineRender, LeavesAreLookedAtWhereTheFileHasNoVisibility) {
+  const std::string tree = smallTree("tree.glb", 3);
+  const Words light = {"--light", "depth-maps", "--no-ground", "--background",
+                       "0,0,0",   "--exposure", "14"};
+  const Outcome known =
+      run({"render", path("none.glb"), "-o", path("out.png"), "--light", "depth-maps"});
+  if (known.err.find("no preset") != std::string::npos)
+    GTEST_SKIP() << "no preset has this light yet";
+  const auto with = [&light](const Words& more) {
+    Words all = light;
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  Json plain_report, kept_report, dense_report;
+  const Image plain = picture(tree, light, &plain_report);
+  EXPECT_GT(plain_report["bake_seconds"], 0.0);
+  runWell({"bake", tree, "-o", path("kept.glb"), "--ambient", "leaf-visibility"});
+  const Image kept = picture(path("kept.glb"), light, &kept_report);
+  EXPECT_EQ(kept_report["bake_seconds"], 0.0);
+  const double of_exponents =
+      difference(plain, picture(tree, with({"--visibility-exponent", "3"})));
+  EXPECT_GT(of_exponents, 0.1);
+  EXPECT_LT(difference(plain, kept), 0.1 * of_exponents);
+  // A file with another bake has no visibility.
+  runWell({"bake", tree, "-o", path("dense.glb")});
+  EXPECT_LT(difference(plain, picture(path("dense.glb"), light, &dense_report)),
+            0.1 * of_exponents);
+  EXPECT_GT(dense_report["bake_seconds"], 0.0);
+}
+
 TEST_F(CommandLineRender, Refuses) {
   const std::string tree = smallTree();
   const auto refused = [&](const Words& options, const Words& said) {
@@ -169,6 +199,8 @@ TEST_F(CommandLineRender, Refuses) {
   refused({"--turbidity", "nan"}, {"turbidity"});
   refused({"--sky", "green"}, {"--sky: 'green' is unknown"});
   refused({"--bands", "9"}, {"--bands: 9 is out of range"});
+  for (const char* exponent : {"0", "-1", "nan", "inf"})
+    refused({"--visibility-exponent", exponent}, {"--visibility-exponent: must be a number above"});
   refused({"--exposure", "bright"}, {"--exposure: 'bright' is no number"});
   refused({"--exposure", "99"}, {"--exposure: 99 is out of range"});
   refused({"--key", "0"}, {"--key: 0 is out of range"});

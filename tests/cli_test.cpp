@@ -275,6 +275,13 @@ TEST_F(CommandLine, RefusesParametersOfTheBake) {
   refused({"--blend", "-1"}, {"blend"});
   refused({"--d-min", "0"}, {"d_min"});
   refused({"--tau", "-1"}, {"tau must not be negative"});
+  for (const char* directions : {"0", "1", "4097", "-6"})
+    refused({"--ambient", "leaf-visibility", "--directions", directions},
+            {"--directions: ", directions, "not in range 2 to 4096", "see verdure bake --help"});
+  for (const char* rays : {"0", "-1", "65537"})
+    refused({"--ambient", "leaf-visibility", "--rays", rays},
+            {"--rays: ", rays, "not in range 1 to 65536"});
+  refused({"--ambient", "visible"}, {"--ambient: 'visible' is unknown"});
   // The message holds the maximum: just below it there is a surface, above it none.
   const Outcome high = run({"bake", tree, "-o", out, "--tau", "1e6"});
   EXPECT_EQ(high.code, 2);

@@ -4,6 +4,7 @@
 #include "shared/color.h"
 #include "shared/density.h"
 #include "shared/illumination.h"
+#include "shared/leaf_visibility.h"
 #include "shared/sh.h"
 #include "shared/sky.h"
 #include "shared/sky_formula.h"
@@ -25,8 +26,9 @@ struct SharedResults {
   vec4 tone;       // toneMapped, ditheredLevel / 256
   vec4 dome;       // domeCoordinates, reinhard, luminanceOf
   vec4 white;      // automaticWhite / 10, luminanceBin / 512, luminanceInBin / 16
+  vec4 leaf;       // visibilityShares, unpackVisibility of packVisibility
 };
-SHARED_SIZE(SharedResults, 160);
+SHARED_SIZE(SharedResults, 176);
 
 SHARED_FUNCTION SharedResults evaluateShared(vec4 a, vec4 b) {
   vec3 n = normalize(vec3(a.x - 0.5f, a.y - 0.5f, a.z - 0.45f));
@@ -71,6 +73,9 @@ SHARED_FUNCTION SharedResults evaluateShared(vec4 a, vec4 b) {
   r.white = vec4(automaticWhite(8.0f * a.x) / 10.0f,
                  float(luminanceBin(exp2(floor(40.0f * a.y) - 20.0f + 0.0625f))) / 512.0f,
                  luminanceInBin(200 + int(88.0f * b.x), b.y) / 16.0f, 0.0f);
+  vec2 shares = visibilityShares(vec2(a.x, b.x), a.y < b.y, 0.1f + 4.0f * a.z);
+  vec2 packed_seen = unpackVisibility(float(packVisibility(vec2(a.w, 1.2f * b.w))));
+  r.leaf = vec4(shares.x, shares.y, packed_seen.x, packed_seen.y);
   return r;
 }
 

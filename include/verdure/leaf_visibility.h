@@ -16,7 +16,7 @@ struct LeafVisibilityOptions {
   /// does; any other number, 2 to 4096, evenly over the sphere.
   int directions = 64;
   /// Of each leaf, shared out over the directions (at least one each).
-  int rays = 256;
+  int rays = 64;
   std::uint32_t seed = 1;
   std::size_t max_memory_bytes = std::size_t{8} << 30;  ///< of the rays' scene
   std::function<bool(double share)> progress;           ///< as RayOptions::progress

@@ -54,6 +54,9 @@ struct Mesh {
   std::vector<std::uint32_t> indices;  ///< three per triangle
   /// Ambient coefficients of an earlier bake, [0, 1], from the file's `_AO`; empty if it has none.
   std::vector<float> ambient;
+  /// Of an earlier bake, from the file's `_VISIBILITY`: how much of the front and of the back of
+  /// each vertex's leaf is seen from around, [0, 1]; empty if it has none.
+  std::vector<glm::vec2> visibility;
   /// Wood only: the branch (index into Plant::branches) of each vertex; empty if unknown.
   std::vector<std::uint32_t> branch_of_vertex;
 

@@ -25,6 +25,9 @@ enum class AmbientSource {
   kSky,       ///< of the sky and the open ground that the normal faces
   kBaked,     ///< kSky times the baked coefficient
   kTransfer,  ///< the transfer vectors' for this sky and sun; kBaked where an item has none
+  /// kSky times how much of the leaf's face is seen from around (MeshLight::visibility): (3) of
+  /// Gumbau et al. 2008; kBaked where a mesh has none
+  kLeafVisibility,
 };
 
 /// How much of the sun reaches a surface behind others.
@@ -80,6 +83,8 @@ struct View {
   Daylight daylight = preethamDaylight(3.0f, directionOf(0.9f, 0.75f));
   int sky_bands = 5;  ///< of spherical harmonics that light the scene, 2 to 7
   Terms terms;
+  /// n of AmbientSource::kLeafVisibility, > 0: above 1 leaves darken rapidly inwards, below slowly.
+  float visibility_exponent = 1.0f;
   Exposure exposure;
   float bloom = 0.01f;  ///< share of the light that lens and eye spread, [0, 1]
   int shadow_map_size = 2048;

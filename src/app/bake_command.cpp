@@ -203,7 +203,8 @@ void runBake(const BakeCommand& command) {
   if (!rays) return;
   if (rays->seconds_visibility > 0.0)
     fmt::print("leaves looked at from {} sides, {} rays each; mean ambient {:.2f} in {:.2f} s\n",
-               command.rays.directions, rays->rays, rays->mean_ambient, rays->seconds_visibility);
+               command.rays.directions, rays->leaf_rays, rays->mean_ambient,
+               rays->seconds_visibility);
   if (!(rays->seconds_ambient > 0.0 || rays->seconds_normals > 0.0 || rays->transfer)) return;
   fmt::print("traced {} rays a vertex, {} bounces", rays->rays, rays->bounces);
   if (rays->seconds_ambient > 0.0)

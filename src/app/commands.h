@@ -56,7 +56,7 @@ struct BakeParameters {
 
 struct RayParameters {
   std::string ambient = "density";
-  int rays = 256;
+  std::optional<int> rays;  ///< unset: as RayOptions, LeafVisibilityOptions
   int bounces = 3;
   int transfer_bands = 0;  ///< 0 = none
   int directions = 64;     ///< of the leaves' visibility
@@ -105,6 +105,7 @@ struct RenderCommand : SceneOptions {
   DaylightOptions daylight;
   ExposureOptions exposure;
   int bands = 5;
+  float visibility_exponent = 1.0f;
   std::string background;
   int shadow_map = 2048;
   DeviceOptions device;
@@ -198,7 +199,7 @@ std::pair<int, int> parseSize(const std::string& text);
 /// Comma-separated numbers; throws Error unless there are `count` of them (0: any).
 std::vector<float> parseNumbers(const std::string& option, const std::string& text,
                                 std::size_t count);
-/// The light that a file brought along in `_AO` and NORMAL, if it has any.
+/// The light that a file brought along in `_AO`, `_VISIBILITY` and NORMAL, if it has any.
 std::optional<CrownLight> lightOfFile(const Plant& plant);
 /// Where a plant stands: on the zero of its own heights, where strands may hang below it; one that
 /// was modelled around or away from it stands on its lowest point.
@@ -207,6 +208,7 @@ float groundHeight(const Plant& plant);
 struct RayReport {
   std::optional<PlantTransfer> transfer;
   int rays = 0, bounces = 0;
+  int leaf_rays = 0;  ///< of the leaves' visibility
   double seconds_normals = 0, seconds_ambient = 0, seconds_visibility = 0, seconds_transfer = 0;
   double mean_ambient = 0;  ///< of the coefficients that are written
 };

@@ -192,11 +192,15 @@ int run(int argc, char** argv) {
   bake_app
       ->add_option("--directions", bake.rays.directions,
                    "Of leaf-visibility: from how many sides leaves are looked at (6: the paper's)")
+      ->check(CLI::Range(2, 4096))
       ->group(kRayGroup)
       ->capture_default_str();
-  bake_app->add_option("--rays", bake.rays.rays, "Rays of each vertex and side of a leaf")
-      ->group(kRayGroup)
-      ->capture_default_str();
+  bake_app
+      ->add_option("--rays", bake.rays.rays,
+                   "Rays of each vertex and side of a leaf (default: 256), or of each leaf for "
+                   "leaf-visibility (default: 64)")
+      ->check(CLI::Range(1, 65536))
+      ->group(kRayGroup);
   bake_app->add_option("--bounces", bake.rays.bounces, "Most surfaces that light meets on its way")
       ->group(kRayGroup)
       ->capture_default_str();
@@ -220,6 +224,10 @@ int run(int argc, char** argv) {
       ->add_option("--bloom", render.exposure.bloom, "Share of light that the lens spreads, 0 to 1")
       ->capture_default_str();
   render_app->add_option("--bands", render.bands, "Bands of harmonics of the sky's light, 2 to 7")
+      ->capture_default_str();
+  render_app
+      ->add_option("--visibility-exponent", render.visibility_exponent,
+                   "Of leaf visibility: above 1 leaves darken rapidly inwards, below slowly")
       ->capture_default_str();
   render_app->add_option("--background", render.background, "R,G,B in [0, 1] instead of the sky");
   render_app->add_option("--shadow-map", render.shadow_map, "Side of the shadow map, pixels")

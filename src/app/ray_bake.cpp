@@ -36,7 +36,7 @@ std::optional<RayReport> traceLight(const BakeCommand& command, const Plant& pla
   Progress progress("bake");
   const char* step = "";
   RayOptions options;
-  options.rays = parameters.rays;
+  options.rays = parameters.rays.value_or(options.rays);
   options.bounces = parameters.bounces;
   options.progress = [&](double share) {
     progress.show(step, share);
@@ -61,7 +61,7 @@ std::optional<RayReport> traceLight(const BakeCommand& command, const Plant& pla
     timer.lap();
     LeafVisibilityOptions looks;
     looks.directions = parameters.directions;
-    looks.rays = options.rays;
+    looks.rays = report.leaf_rays = parameters.rays.value_or(looks.rays);
     looks.progress = options.progress;
     setLeafVisibility(plant, leafVisibility(plant, looks), light);
     report.seconds_visibility = timer.lap();
@@ -89,6 +89,7 @@ std::optional<RayReport> traceLight(const BakeCommand& command, const Plant& pla
 
 std::string jsonOf(const RayReport& r) {
   nlohmann::ordered_json json = {{"rays", r.rays},
+                                 {"leaf_rays", r.leaf_rays},
                                  {"bounces", r.bounces},
                                  {"mean_ambient", r.mean_ambient},
                                  {"transfer_bands", r.transfer ? r.transfer->bands : 0},

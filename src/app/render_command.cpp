@@ -11,6 +11,7 @@
 #include "base/files.h"
 #include "base/progress.h"
 #include "verdure/error.h"
+#include "verdure/leaf_visibility.h"
 
 namespace verdure::app {
 namespace {
@@ -91,8 +92,8 @@ std::optional<CrownLight> lightOfFile(const Plant& plant) {
   CrownLight light;
   bool any = false;
   for (const Mesh& mesh : plant.meshes) {
-    MeshLight part{mesh.normals, mesh.ambient};
-    any = any || !mesh.ambient.empty();
+    MeshLight part{mesh.normals, mesh.ambient, mesh.visibility};
+    any = any || !mesh.ambient.empty() || !mesh.visibility.empty();
     if (part.ambient.empty()) part.ambient.assign(mesh.positions.size(), 1.0f);
     for (float& k : part.ambient) k = std::clamp(k, 1.0f / 255.0f, 1.0f);
     light.meshes.push_back(std::move(part));
@@ -100,6 +101,25 @@ std::optional<CrownLight> lightOfFile(const Plant& plant) {
   if (!any) return std::nullopt;
   return light;
 }
+
+namespace {
+
+/// Adds leaf visibility to a light that has none. Returns the seconds that it took.
+double addLeafVisibility(const Plant& plant, Progress& progress, CrownLight& light) {
+  if (std::any_of(light.meshes.begin(), light.meshes.end(),
+                  [](const MeshLight& mesh) { return !mesh.visibility.empty(); }))
+    return 0.0;
+  Timer timer;
+  LeafVisibilityOptions looks;
+  looks.progress = [&progress](double share) {
+    progress.show("leaf visibility", share);
+    return true;
+  };
+  setLeafVisibility(plant, leafVisibility(plant, looks), light);
+  return timer.seconds();
+}
+
+}  // namespace
 
 void runRender(const RenderCommand& command) {
   View view;
@@ -111,6 +131,9 @@ void runRender(const RenderCommand& command) {
   if (command.bands < 2 || command.bands > 7)
     throw Error("--bands", fmt::format("{} is out of range", command.bands), "choose 2 to 7");
   view.sky_bands = command.bands;
+  if (!(command.visibility_exponent > 0.0f) || !std::isfinite(command.visibility_exponent))
+    throw Error("--visibility-exponent", "must be a number above 0", "1 is usual");
+  view.visibility_exponent = command.visibility_exponent;
   command.checkCamera();
   if (!command.background.empty()) {
     const auto rgb = parseNumbers("--background", command.background, 3);
@@ -148,7 +171,8 @@ void runRender(const RenderCommand& command) {
   // The file's own bake, or one made now; a light without baked terms needs neither.
   std::optional<CrownLight> light;
   if (!command.bake_again) light = lightOfFile(plant);
-  const bool baked_terms = view.terms.normal == NormalSource::kCrown ||
+  const bool visible_terms = view.terms.ambient_source == AmbientSource::kLeafVisibility;
+  const bool baked_terms = view.terms.normal == NormalSource::kCrown || visible_terms ||
                            view.terms.ambient_source == AmbientSource::kBaked;
   double bake_seconds = 0.0;
   if (!light && baked_terms) {
@@ -163,6 +187,7 @@ void runRender(const RenderCommand& command) {
       bake_seconds = bake.report.seconds_total;
     }
   }
+  if (visible_terms) bake_seconds += addLeafVisibility(plant, progress, *light);
   if (view.terms.normal == NormalSource::kLeaf) restoreLeafNormals(plant);
   Scene scene = command.sceneOf(plant, light ? &*light : nullptr);
   if (transfer) scene.items[0].transfer = &*transfer;

@@ -38,6 +38,20 @@ std::vector<std::vector<std::uint32_t>> leavesOfTriangles(const Plant& plant) {
   return leaf_of;
 }
 
+/// Points of the unit square, evenly spread however many are taken: the R2 sequence (Roberts, "The
+/// Unreasonable Effectiveness of Quasirandom Sequences", 2018), shifted by a random stream.
+class SpreadPoints {
+ public:
+  explicit SpreadPoints(Random& random) : at_(random.uniform(), random.uniform()) {}
+  glm::dvec2 next() {
+    at_ += glm::dvec2(0.75487766624669276, 0.56984029099805327);
+    return at_ -= glm::floor(at_);
+  }
+
+ private:
+  glm::dvec2 at_;
+};
+
 /// Looks back from points of one leaf.
 class Looker {
  public:
@@ -47,28 +61,31 @@ class Looker {
   glm::vec2 visibility(std::uint32_t number, const std::vector<glm::vec3>& directions, int points,
                        Random& random) const {
     const Leaf& leaf = plant_.leaves[number];
-    std::vector<float> until;  // sums of the triangles' areas
-    float area = 0.0f;
-    for (std::uint32_t t = 0; t < leaf.triangle_count; ++t)
-      until.push_back(area +=
-                      static_cast<float>(areaOf(plant_.meshes[leaf.mesh],
-                                                plant_.leaf_triangles[leaf.first_triangle + t])));
+    const std::vector<Piece> pieces = piecesOf(leaf);
+    if (pieces.empty()) return glm::vec2(1.0f);
+    const bool flat = isFlat(pieces);
+    SpreadPoints spread(random);
     std::array<double, 2> seen{}, alone{};
-    if (!(area > 0.0f)) return glm::vec2(1.0f);
     for (const glm::vec3& direction : directions)
       for (int p = 0; p < points; ++p) {
-        const std::optional<SurfacePoint> point = pointOn(leaf, until, random);
+        const std::optional<Point> point = pointOn(leaf, pieces, spread);
         if (!point) continue;
         const float cosine = glm::dot(point->normal, direction);
         const std::size_t side = cosine > 0.0f ? 0 : 1;
         Ray ray;
         ray.origin = scene_.originOff(point->position, side == 0 ? point->normal : -point->normal);
         ray.direction = direction;
-        const std::optional<RayHit> hit = scene_.trace(ray);
-        if (hit && leaf_of_[hit->mesh][hit->triangle] == number) continue;
+        bool hidden = false;
+        if (flat) {
+          hidden = scene_.occluded(ray);
+        } else {
+          const std::optional<RayHit> hit = scene_.trace(ray);
+          if (hit && leaf_of_[hit->mesh][hit->triangle] == number) continue;
+          hidden = hit.has_value();
+        }
         const double weight = std::abs(double{cosine});
         alone[side] += weight;
-        if (!hit) seen[side] += weight;
+        if (!hidden) seen[side] += weight;
       }
     const auto share = [&](std::size_t side) {
       return alone[side] > 0.0 ? static_cast<float>(seen[side] / alone[side]) : 1.0f;
@@ -77,23 +94,73 @@ class Looker {
   }
 
  private:
-  /// A random point that the alpha cut leaves; none of a leaf of which hardly anything is left.
-  std::optional<SurfacePoint> pointOn(const Leaf& leaf, const std::vector<float>& until,
-                                      Random& random) const {
+  /// A triangle of the leaf that has an area.
+  struct Piece {
+    std::uint32_t triangle = 0;  ///< of the mesh
+    glm::vec3 corner{0.0f}, to_second{0.0f}, to_third{0.0f};
+    glm::vec3 normal{0.0f};  ///< unit
+    double until = 0.0;      ///< area of this and those before
+  };
+  struct Point {
+    glm::vec3 position, normal;
+  };
+
+  std::vector<Piece> piecesOf(const Leaf& leaf) const {
+    const Mesh& mesh = plant_.meshes[leaf.mesh];
+    std::vector<Piece> pieces;
+    double area = 0.0;
+    for (std::uint32_t t = 0; t < leaf.triangle_count; ++t) {
+      Piece piece;
+      piece.triangle = plant_.leaf_triangles[leaf.first_triangle + t];
+      const std::uint32_t* corner = &mesh.indices[3 * std::size_t{piece.triangle}];
+      piece.corner = mesh.positions[corner[0]];
+      piece.to_second = mesh.positions[corner[1]] - piece.corner;
+      piece.to_third = mesh.positions[corner[2]] - piece.corner;
+      const glm::vec3 cross = glm::cross(piece.to_second, piece.to_third);
+      const float length = glm::length(cross);
+      if (!(length > 0.0f)) continue;
+      piece.normal = cross / length;
+      piece.until = area += 0.5 * double{length};
+      pieces.push_back(piece);
+    }
+    return pieces;
+  }
+
+  /// Whether no ray that leaves the leaf can meet it again: all corners lie within what rays start
+  /// off the surface, and all pieces face the same way.
+  bool isFlat(const std::vector<Piece>& pieces) const {
+    const Piece& first = pieces[0];
+    return std::all_of(pieces.begin(), pieces.end(), [&](const Piece& piece) {
+      const float most = 0.5f * scene_.originOffset(piece.corner);
+      for (const glm::vec3& edge : {glm::vec3(0.0f), piece.to_second, piece.to_third})
+        if (!(std::abs(glm::dot(first.normal, piece.corner + edge - first.corner)) < most))
+          return false;
+      return glm::dot(first.normal, piece.normal) > 0.0f;
+    });
+  }
+
+  /// A point that the alpha cut leaves; none of a leaf of which hardly anything is left.
+  std::optional<Point> pointOn(const Leaf& leaf, const std::vector<Piece>& pieces,
+                               SpreadPoints& spread) const {
     constexpr int kTries = 32;
     RayHit at;
     at.item = 0;
     at.mesh = leaf.mesh;
     for (int t = 0; t < kTries; ++t) {
-      const float where = random.uniform() * until.back();
-      const auto piece = std::min<std::size_t>(
-          static_cast<std::size_t>(std::upper_bound(until.begin(), until.end(), where) -
-                                   until.begin()),
-          until.size() - 1);
-      at.triangle = plant_.leaf_triangles[leaf.first_triangle + piece];
-      at.barycentric = {random.uniform(), random.uniform()};
-      if (at.barycentric.x + at.barycentric.y > 1.0f) at.barycentric = 1.0f - at.barycentric;
-      if (!scene_.cutAt(at)) return scene_.surfaceAt(at, {});
+      const glm::dvec2 u = spread.next();
+      const double area = u.x * pieces.back().until;
+      std::size_t i = 0;
+      while (i + 1 < pieces.size() && pieces[i].until <= area) ++i;
+      const Piece& piece = pieces[i];
+      // Within the piece the same number is evenly spread again.
+      const double begin = i == 0 ? 0.0 : pieces[i - 1].until;
+      const double root = std::sqrt(std::clamp((area - begin) / (piece.until - begin), 0.0, 1.0));
+      at.triangle = piece.triangle;
+      at.barycentric = {root * (1.0 - u.y), root * u.y};
+      if (scene_.cutAt(at)) continue;
+      return Point{
+          piece.corner + piece.to_second * at.barycentric.x + piece.to_third * at.barycentric.y,
+          piece.normal};
     }
     return std::nullopt;
   }

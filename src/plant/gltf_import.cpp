@@ -365,7 +365,7 @@ class GltfImporter {
     }
     part.mesh.material = materialOf(primitive, who);
     readUvs(*attributes, part.mesh, from, count, place.instances(), who);
-    readAmbient(*attributes, part.mesh, from, count, place.instances(), who);
+    readLight(*attributes, part.mesh, from, count, place.instances(), who);
     namePart(part, node, mesh, several);
     noteAttributes(*attributes, primitive, who);
     raw_.parts.push_back(std::move(part));
@@ -433,19 +433,27 @@ class GltfImporter {
           fmt::format("{} has {} UVs that are not finite: taken as 0", who, withCommas(bad)));
   }
 
-  /// The light of an earlier bake.
-  void readAmbient(const Json& attributes, Mesh& mesh, const MeshSource& from, std::size_t count,
-                   std::size_t instances, const std::string& who) {
-    const auto accessor = readIndex(document_, attributes, "_AO", "accessors", who);
-    if (!accessor) return;
-    const auto values = readFloats(document_, *accessor, 1, who);
-    if (values.size() != count) document_.fail(who + ": _AO and POSITION differ in length");
+  /// The light of an earlier bake: shares in [0, 1], 1 where the file's are not finite.
+  void readLight(const Json& attributes, Mesh& mesh, const MeshSource& from, std::size_t count,
+                 std::size_t instances, const std::string& who) {
     const std::size_t used = from.vertices_per_instance;
-    mesh.ambient.resize(used * instances);
-    for (std::size_t i = 0; i < mesh.ambient.size(); ++i) {
-      const float k = values[from.vertex_of.empty() ? i % used : from.vertex_of[i % used]];
-      mesh.ambient[i] = std::isfinite(k) ? std::clamp(k, 0.0f, 1.0f) : 1.0f;
-    }
+    const auto read = [&](const char* name, std::size_t components, const auto& store) {
+      const auto accessor = readIndex(document_, attributes, name, "accessors", who);
+      if (!accessor) return;
+      const auto values = readFloats(document_, *accessor, components, who);
+      if (values.size() != count * components)
+        document_.fail(fmt::format("{}: {} and POSITION differ in length", who, name));
+      for (std::size_t i = 0; i < used * instances; ++i) {
+        const std::size_t v = from.vertex_of.empty() ? i % used : from.vertex_of[i % used];
+        store([&](std::size_t c) {
+          const float share = values[components * v + c];
+          return std::isfinite(share) ? std::clamp(share, 0.0f, 1.0f) : 1.0f;
+        });
+      }
+    };
+    read("_AO", 1, [&](const auto& share) { mesh.ambient.push_back(share(0)); });
+    read("_VISIBILITY", 2,
+         [&](const auto& share) { mesh.visibility.emplace_back(share(0), share(1)); });
   }
 
   void namePart(RawPart& part, std::size_t node, std::size_t mesh, bool several) {

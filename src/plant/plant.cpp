@@ -52,7 +52,8 @@ std::size_t memoryBytes(const Plant& plant) {
   std::size_t bytes = bytesOf(plant.leaves) + bytesOf(plant.leaf_triangles);
   for (const Mesh& mesh : plant.meshes)
     bytes += bytesOf(mesh.positions) + bytesOf(mesh.normals) + bytesOf(mesh.uvs) +
-             bytesOf(mesh.indices) + bytesOf(mesh.branch_of_vertex);
+             bytesOf(mesh.indices) + bytesOf(mesh.ambient) + bytesOf(mesh.visibility) +
+             bytesOf(mesh.branch_of_vertex);
   for (const Texture& texture : plant.textures) bytes += bytesOf(texture.image.rgba);
   for (const Branch& branch : plant.branches) bytes += sizeof(Branch) + bytesOf(branch.points);
   return bytes;

@@ -135,6 +135,8 @@ void FrameDrawer::checkView(const View& view) const {
   demand(!view.exposure.ev || std::abs(*view.exposure.ev) <= 40.0f, "exposure.ev",
          "choose -40 to 40");
   demand(view.bloom >= 0.0f && view.bloom <= 1.0f, "bloom", "choose 0 to 1");
+  demand(view.visibility_exponent > 0.0f && std::isfinite(view.visibility_exponent),
+         "visibility_exponent", "choose a number above 0");
   const glm::vec3& sun = view.daylight.sun.direction;
   demand(std::abs(glm::length(sun) - 1.0f) < 1e-3f, "the direction of the sun",
          "make it a unit vector");
@@ -199,7 +201,7 @@ shared::FrameUniforms FrameDrawer::makeUniforms(const GpuScene& scene, const Vie
   u.to_sun = glm::vec4(light.to_sun, fit.texel_m);
   u.sun_light = glm::vec4(light.sun * units, 1.0f / static_cast<float>(view.shadow_map_size));
   u.sun_disk = glm::vec4(light.sun_disk * units, view.daylight.sun.angular_radius);
-  u.open_sky = glm::vec4(light.open_sky * units, 0.0f);
+  u.open_sky = glm::vec4(light.open_sky * units, view.visibility_exponent);
   for (std::size_t i = 0; i < 9; ++i)
     u.open_light[i] = glm::vec4(light.open_light.weights[i] * units, 0.0f);
   const float distance = glm::length(view.camera.eye - view.camera.target);

@@ -13,10 +13,11 @@ constexpr std::uint32_t kFragment[] = {
 gpu::Constants constantsOf(const Draw& draw, const Terms& terms) {
   // A plant without baked light has its leaf normals in either stream: they are turned over.
   const bool leaf_normals = terms.normal == NormalSource::kLeaf || !draw.baked;
-  // Without transfer vectors it is lit as well as can be: unbaked, the coefficient is 1.
-  const AmbientSource source = terms.ambient_source == AmbientSource::kTransfer && !draw.transfer
-                                   ? AmbientSource::kBaked
-                                   : terms.ambient_source;
+  // Without what the light needs it is lit as well as can be: unbaked, the coefficient is 1.
+  const AmbientSource wanted = terms.ambient_source;
+  const bool lacking = (wanted == AmbientSource::kTransfer && !draw.transfer) ||
+                       (wanted == AmbientSource::kLeafVisibility && !draw.visibility);
+  const AmbientSource source = lacking ? AmbientSource::kBaked : wanted;
   return termConstants(terms,
                        {.ambient_source = source,
                         .transmission = draw.foliage && terms.transmission,

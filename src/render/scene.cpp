@@ -10,6 +10,7 @@
 #include "scene/scene.h"
 #include "shared/density.h"
 #include "shared/foliage_shadow.h"
+#include "shared/leaf_visibility.h"
 #include "verdure/error.h"
 
 namespace verdure {
@@ -150,6 +151,9 @@ class Packer {
       throw Error(where, "has not one texture coordinate for each vertex");
     if (light != nullptr && (light->normals.size() != count || light->ambient.size() != count))
       throw Error(where, "its baked light has another number of vertices", "bake this plant");
+    const bool visibility = light != nullptr && !light->visibility.empty();
+    if (visibility && light->visibility.size() != count)
+      throw Error(where, "its leaf visibility has another number of vertices", "bake this plant");
     if (std::any_of(mesh.indices.begin(), mesh.indices.end(),
                     [count](std::uint32_t i) { return i >= count; }))
       throw Error(where, "has an index past its last vertex");
@@ -161,6 +165,7 @@ class Packer {
     Draw draw;
     draw.foliage = mesh.kind == PartKind::kFoliage;
     draw.baked = light != nullptr;
+    draw.visibility = visibility;
     draw.vertex_offset = static_cast<std::int32_t>(out_.positions.size());
     draw.first_index = static_cast<std::uint32_t>(out_.indices.size());
     draw.index_count = static_cast<std::uint32_t>(mesh.indices.size() / 3 * 3);
@@ -175,10 +180,11 @@ class Packer {
     if (any_baked) out_.crown_normals.resize(base + count);
     parallelFor(count, 4096, [&](std::size_t v) {
       const float k = light != nullptr ? light->ambient[v] : 1.0f;
-      out_.leaf_normals[base + v] = packNormal(mesh.normals[v], k);
+      const glm::vec2 seen = visibility ? light->visibility[v] : glm::vec2(1.0f);
+      out_.leaf_normals[base + v] = packNormal(mesh.normals[v], k, seen);
       if (any_baked)
         out_.crown_normals[base + v] =
-            packNormal(light != nullptr ? light->normals[v] : mesh.normals[v], k);
+            packNormal(light != nullptr ? light->normals[v] : mesh.normals[v], k, seen);
     });
     return draw;
   }
@@ -255,12 +261,13 @@ class Packer {
 
 }  // namespace
 
-PackedNormal packNormal(const glm::vec3& unit_normal, float ambient) {
+PackedNormal packNormal(const glm::vec3& unit_normal, float ambient, const glm::vec2& visibility) {
   const glm::vec3 n = shared::encodeNormal(unit_normal, std::clamp(ambient, 0.0f, 1.0f));
   const auto component = [](float value) {
     return static_cast<std::int16_t>(std::lround(std::clamp(value, -1.0f, 1.0f) * 32767.0f));
   };
-  return {component(n.x), component(n.y), component(n.z), 0};
+  return {component(n.x), component(n.y), component(n.z),
+          static_cast<std::int16_t>(shared::packVisibility(visibility))};
 }
 
 PackedScene packScene(const Scene& scene) {

@@ -15,10 +15,12 @@
 
 namespace verdure {
 
-/// A unit normal times the ambient coefficient, 16 bits a component (the fourth is unused): the
-/// paper's encoding. A vertex with baked light is no larger than one without.
+/// A unit normal times the ambient coefficient, 16 bits a component: the paper's encoding. The
+/// fourth is packVisibility() of the leaf's front and back (shared/leaf_visibility.h). A vertex
+/// with baked light is no larger than one without.
 using PackedNormal = std::array<std::int16_t, 4>;
-PackedNormal packNormal(const glm::vec3& unit_normal, float ambient);
+PackedNormal packNormal(const glm::vec3& unit_normal, float ambient,
+                        const glm::vec2& visibility = glm::vec2(1.0f));
 
 /// Rows of world_from_plant.
 using PackedInstance = std::array<glm::vec4, 3>;
@@ -26,8 +28,9 @@ using PackedInstance = std::array<glm::vec4, 3>;
 /// One mesh at all places of its item.
 struct Draw {
   bool foliage = false;
-  bool baked = false;     ///< has crown normals; else they are the mesh's own
-  bool transfer = false;  ///< has transfer vectors
+  bool baked = false;       ///< has crown normals; else they are the mesh's own
+  bool transfer = false;    ///< has transfer vectors
+  bool visibility = false;  ///< has leaf visibility
   bool alpha_test = false;
   bool normal_map = false;
   bool thickness_map = false;

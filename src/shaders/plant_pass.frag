@@ -4,6 +4,7 @@
 #include "shared/gloss.h"
 #include "shared/illumination.h"
 #include "shared/leaf.h"
+#include "shared/leaf_visibility.h"
 #include "shared/normal_map.h"
 #include "shared/sh.h"
 #include "shared/tone.h"
@@ -26,6 +27,7 @@ layout(location = 4) centroid in vec3 front_light;
 layout(location = 5) centroid in vec3 back_light;
 /// Of the triangle: that of its first corner.
 layout(location = 6) flat in uint seed;
+layout(location = 7) centroid in vec2 visibility_of_sides;
 layout(location = 0) out vec4 out_color;
 
 /// PCG's output hash.
@@ -113,9 +115,11 @@ void main() {
     } else if (kAmbientSource == kConstant) {
       near = beyond = frame.open_sky.rgb;
     } else {
-      float k_a = kAmbientSource == kBaked ? in_normal.w : 1.0;
-      near = shIrradiance(n, frame.open_light) * k_a;
-      if (kTransmission) beyond = shIrradiance(-n, frame.open_light) * k_a;
+      vec2 k_a = vec2(kAmbientSource == kBaked ? in_normal.w : 1.0);
+      if (kAmbientSource == kLeafVisibility)
+        k_a = visibilityShares(visibility_of_sides, gl_FrontFacing, frame.open_sky.w);
+      near = shIrradiance(n, frame.open_light) * k_a.x;
+      if (kTransmission) beyond = shIrradiance(-n, frame.open_light) * k_a.y;
     }
   }
   vec3 ambient = near * color;

@@ -3,10 +3,11 @@
 #include "frame_set.glsl"
 #include "instance.glsl"
 #include "shared/density.h"
+#include "shared/leaf_visibility.h"
 #include "terms.glsl"
 
 layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 encoded_normal;
+layout(location = 1) in vec4 encoded_normal;  // w = packVisibility() / 32767
 layout(location = 2) in vec2 uv;
 layout(location = 6) in vec3 front_light;
 layout(location = 7) in vec3 back_light;
@@ -17,12 +18,16 @@ layout(location = 3) centroid out vec2 out_covered_uv;
 layout(location = 4) centroid out vec3 out_front_light;
 layout(location = 5) centroid out vec3 out_back_light;
 layout(location = 6) flat out uint out_seed;
+layout(location = 7) centroid out vec2 out_visibility;  // by gl_FrontFacing: of true, of false
 
 void main() {
-  vec4 decoded = decodeNormal(encoded_normal);
+  vec4 decoded = decodeNormal(encoded_normal.xyz);
   out_position = worldFromPlant(position);
   vec3 normal = worldNormal(decoded.xyz, kFlipNormal);
   out_normal = vec4(normal * inversesqrt(max(dot(normal, normal), 1e-30)), decoded.w);
+  // A mirrored instance turns the triangles' winding over.
+  vec2 visibility = unpackVisibility(encoded_normal.w * 32767.0);
+  out_visibility = dot(row0.xyz, cross(row1.xyz, row2.xyz)) < 0.0 ? visibility.yx : visibility;
   out_seed = uint(gl_VertexIndex) + uint(gl_InstanceIndex) * 0x9e3779b9u;
   out_uv = uv;
   out_covered_uv = uv;

@@ -17,7 +17,7 @@ struct FrameUniforms {
   vec4 to_sun;             ///< unit; w = size of a shadow map texel, m
   vec4 sun_light;          ///< irradiance / pi of a surface facing the sun; w = 1 / size of the map
   vec4 sun_disk;           ///< luminance; w = angular radius
-  vec4 open_sky;           ///< irradiance / pi of open ground by the sky
+  vec4 open_sky;  ///< irradiance / pi of open ground by the sky; w = exponent of leaf visibility
   vec4
       ground;  ///< height, radius of the disc, half distance of the haze, size of a texture tile, m
   vec4 ground_map;  ///< corner x, z of the map of light on the ground, 1 / its size, m; 0 = none

@@ -107,6 +107,7 @@ struct RenderCommand : SceneOptions {
   int bands = 5;
   std::string background;
   int shadow_map = 2048;
+  std::string cascades = "auto";
   DeviceOptions device;
   bool json = false;
 };

@@ -60,7 +60,7 @@ FrameLayout::FrameLayout(const gpu::Device& device)
       material_set(makeMaterialSet(device)),
       pipeline(gpu::makePipelineLayout(device, std::array{*frame_set.layout, *material_set},
                                        vk::ShaderStageFlagBits::eFragment,
-                                       sizeof(shared::DrawUniforms))) {}
+                                       sizeof(shared::DrawUniforms), sizeof(std::uint32_t))) {}
 
 FrameDrawer::FrameDrawer(const gpu::Device& device)
     : device_(&device),
@@ -126,6 +126,8 @@ void FrameDrawer::checkView(const View& view) const {
   const auto demand = [](bool good, const char* what, const char* range) {
     if (!good) throw Error("view", std::string(what) + " is out of range", range);
   };
+  demand(view.shadow_cascades >= 0 && view.shadow_cascades <= shared::kMostCascades,
+         "shadow_cascades", "choose 1 to 4, or 0 for as many as the view needs");
   demand(view.sky_bands >= 2 && view.sky_bands <= kMaxBands, "sky_bands", "choose 2 to 7");
   demand(view.exposure.key > 0.0f && std::isfinite(view.exposure.key), "exposure.key",
          "choose a number above 0");
@@ -148,18 +150,35 @@ void FrameDrawer::resize(const View& view) {
     bloom_pass_.setSource(targets_->resolved);
     tone_pass_.setSource(targets_->color, bloom_pass_.result(), exposure_pass_.result());
   }
+}
+
+std::vector<Cascade> FrameDrawer::cascadesOf(const GpuScene& scene, const View& view) {
   const auto size = static_cast<std::uint32_t>(view.shadow_map_size);
-  if (!shadow_map_ || shadow_map_->request.width != size) {
+  std::vector<Cascade> cascades =
+      fitCascades({.camera = view.camera,
+                   .width = view.width,
+                   .height = view.height,
+                   .bounds = scene.bounds(),
+                   .to_sun = view.daylight.sun.direction,
+                   .size = view.shadow_map_size,
+                   .count = view.terms.shadow ? view.shadow_cascades : 1,
+                   .snap = snap_cascades_});
+  // Layers that are there stay when fewer are needed: the next frame may need them again.
+  const auto layers = static_cast<std::uint32_t>(cascades.size());
+  if (!shadow_maps_ || shadow_maps_->request.width != size ||
+      shadow_maps_->request.layers < layers) {
     using Usage = vk::ImageUsageFlagBits;
-    shadow_map_.reset();
-    shadow_map_ =
+    shadow_maps_.reset();
+    shadow_maps_ =
         gpu::makeTexture(*device_, {.format = FrameLayout::kDepth,
                                     .width = size,
                                     .height = size,
+                                    .layers = layers,
                                     .usage = Usage::eDepthStencilAttachment | Usage::eSampled,
                                     .aspect = kDepthAspect});
-    frame_set_.setTexture(1, *shadow_map_, *shadow_sampler_);
+    frame_set_.setTexture(1, *shadow_maps_, *shadow_sampler_);
   }
+  return cascades;
 }
 
 const Harmonics& FrameDrawer::skyOf(const View& view) {
@@ -172,7 +191,8 @@ const Harmonics& FrameDrawer::skyOf(const View& view) {
 }
 
 shared::FrameUniforms FrameDrawer::makeUniforms(const GpuScene& scene, const View& view,
-                                                const FrameLight& light, float units) const {
+                                                const FrameLight& light, float units,
+                                                const std::vector<Cascade>& cascades) const {
   shared::FrameUniforms u{};
   const float aspect = static_cast<float>(view.width) / static_cast<float>(view.height);
   const CameraRays rays = cameraRays(view.camera, aspect);
@@ -181,9 +201,13 @@ shared::FrameUniforms FrameDrawer::makeUniforms(const GpuScene& scene, const Vie
   u.ray_right = glm::vec4(rays.right, 2.0f / static_cast<float>(view.width));
   u.ray_down = glm::vec4(rays.down, 2.0f / static_cast<float>(view.height));
   u.ray_forward = glm::vec4(rays.forward, 0.0f);
-  const ShadowFit fit = fitShadow(scene.bounds(), light.to_sun, view.shadow_map_size);
-  u.shadow_from_world = fit.shadow_from_world;
-  u.to_sun = glm::vec4(light.to_sun, fit.texel_m);
+  for (std::size_t i = 0; i < cascades.size(); ++i) {
+    const Cascade& next = cascades[std::min(i + 1, cascades.size() - 1)];
+    u.shadow_from_world[i] = cascades[i].shadow_from_world;
+    u.cascade[i] = glm::vec4(cascades[i].texel_m, next.texel_m / cascades[i].texel_m,
+                             glm::vec2(cascades[i].origin));
+  }
+  u.to_sun = glm::vec4(light.to_sun, cascades.size());
   u.sun_light = glm::vec4(light.sun * units, 1.0f / static_cast<float>(view.shadow_map_size));
   u.sun_disk = glm::vec4(light.sun_disk * units, view.daylight.sun.angular_radius);
   u.open_sky = glm::vec4(light.open_sky * units, 0.0f);
@@ -268,7 +292,8 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
     weights = transferWeights(light, view.daylight.sun.angular_radius, units);
     ground_light_.update(scene.grounds(), scene_id_, weights, light.open_sky * units);
   }
-  const shared::FrameUniforms uniforms = makeUniforms(scene, view, light, units);
+  const std::vector<Cascade> cascades = cascadesOf(scene, view);
+  const shared::FrameUniforms uniforms = makeUniforms(scene, view, light, units, cascades);
   std::memcpy(uniforms_.memory.mapped(), &uniforms, sizeof(uniforms));
   const DrawKind kind = kindOf(view);
   plant_pass_.prepare(*device_, layout_, scene, view.terms);
@@ -280,7 +305,8 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
     sky_image_.record(commands);
     ground_light_.record(commands);
     if (!weights.empty()) transfer_pass_.record(commands, scene.transfer(), std::move(weights));
-    shadow_pass_.record(commands, layout_, *frame_set_, scene, *shadow_map_, view.terms.shadow);
+    shadow_pass_.record(commands, layout_, *frame_set_, scene, *shadow_maps_,
+                        static_cast<std::uint32_t>(cascades.size()), view.terms.shadow);
     timers_.stamp(commands, 1);
     recordColor(commands, scene, view, kind);
     timers_.stamp(commands, 2);
@@ -298,6 +324,7 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
       frame.average_luminance > 0.0f ? view.exposure.key / frame.average_luminance : 0.0f;
   frame.white =
       view.exposure.white.value_or(shared::automaticWhite(measured.bright / units * exposure));
+  frame.shadow_cascades = static_cast<int>(cascades.size());
   frame.times.shadow_ms = timers_.milliseconds(0, 1);
   frame.times.color_ms = timers_.milliseconds(1, 2);
   frame.times.tone_ms = timers_.milliseconds(2, 3);

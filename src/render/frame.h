@@ -6,6 +6,7 @@
 #include "gpu/timers.h"
 #include "render/backdrop_pass.h"
 #include "render/bloom_pass.h"
+#include "render/cascades.h"
 #include "render/exposure_pass.h"
 #include "render/frame_layout.h"
 #include "render/frame_light.h"
@@ -31,12 +32,17 @@ class FrameDrawer {
   /// Draws and reads back. Throws Error for sizes out of range.
   Frame draw(GpuScene& scene, const View& view);
 
+  /// Off in tests alone, which look at what snapping cascades to their texels is for.
+  void snapCascades(bool snap) { snap_cascades_ = snap; }
+
  private:
   void checkView(const View& view) const;
   void resize(const View& view);
+  std::vector<Cascade> cascadesOf(const GpuScene& scene, const View& view);
   const Harmonics& skyOf(const View& view);
   shared::FrameUniforms makeUniforms(const GpuScene& scene, const View& view,
-                                     const FrameLight& light, float units) const;
+                                     const FrameLight& light, float units,
+                                     const std::vector<Cascade>& cascades) const;
   void recordColor(const vk::raii::CommandBuffer& commands, const GpuScene& scene, const View& view,
                    const DrawKind& kind) const;
   void recordTone(const vk::raii::CommandBuffer& commands, const View& view, float units) const;
@@ -60,7 +66,8 @@ class FrameDrawer {
   gpu::DescriptorSet frame_set_;
   SkyImage sky_image_;
   GroundLight ground_light_;
-  std::optional<gpu::Texture> shadow_map_;
+  std::optional<gpu::Texture> shadow_maps_;  ///< a layer for each cascade
+  bool snap_cascades_ = true;
   std::optional<Targets> targets_;
   std::shared_ptr<const Sky> known_sky_;
   Harmonics known_harmonics_;  ///< of it

@@ -71,7 +71,9 @@ std::vector<Cascade> fitCount(const CascadeRequest& request, const ShadowFit& wh
     const SunAxes axes(request.to_sun);
     const float aspect = static_cast<float>(request.width) / static_cast<float>(request.height);
     const CameraRays rays = cameraRays(request.camera, aspect);
-    const PyramidSphere sphere = pyramidSphere(glm::length(rays.right + rays.down));
+    // Not from the rays: every bit of it stays when the camera turns.
+    const PyramidSphere sphere = pyramidSphere(std::tan(0.5f * request.camera.vertical_fov) *
+                                               std::sqrt(1.0f + aspect * aspect));
     const float far = 2.0f * powerOfTwoBelow(farthestFrom(request.bounds, rays.eye));
     const float near =
         std::max(powerOfTwoBelow(distanceTo(request.bounds, rays.eye)), far / kDepthRange);

@@ -155,14 +155,14 @@ void FrameDrawer::resize(const View& view) {
 std::vector<Cascade> FrameDrawer::cascadesOf(const GpuScene& scene, const View& view) {
   const auto size = static_cast<std::uint32_t>(view.shadow_map_size);
   std::vector<Cascade> cascades =
-      fitCascades({.camera = view.camera,
+      fitCascades({.camera = cascade_trial_.camera.value_or(view.camera),
                    .width = view.width,
                    .height = view.height,
                    .bounds = scene.bounds(),
                    .to_sun = view.daylight.sun.direction,
                    .size = view.shadow_map_size,
                    .count = view.terms.shadow ? view.shadow_cascades : 1,
-                   .snap = snap_cascades_});
+                   .snap = cascade_trial_.snap});
   // Layers that are there stay when fewer are needed: the next frame may need them again.
   const auto layers = static_cast<std::uint32_t>(cascades.size());
   if (!shadow_maps_ || shadow_maps_->request.width != size ||

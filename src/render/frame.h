@@ -32,8 +32,12 @@ class FrameDrawer {
   /// Draws and reads back. Throws Error for sizes out of range.
   Frame draw(GpuScene& scene, const View& view);
 
-  /// Off in tests alone, which look at what snapping cascades to their texels is for.
-  void snapCascades(bool snap) { snap_cascades_ = snap; }
+  /// In tests alone, which look at what moves in a picture when only the cascades do.
+  struct CascadeTrial {
+    std::optional<Camera> camera = {};  ///< that cascades are fitted to, instead of the view's
+    bool snap = true;                   ///< CascadeRequest::snap
+  };
+  void tryCascades(const CascadeTrial& trial) { cascade_trial_ = trial; }
 
  private:
   void checkView(const View& view) const;
@@ -67,7 +71,7 @@ class FrameDrawer {
   SkyImage sky_image_;
   GroundLight ground_light_;
   std::optional<gpu::Texture> shadow_maps_;  ///< a layer for each cascade
-  bool snap_cascades_ = true;
+  CascadeTrial cascade_trial_;
   std::optional<Targets> targets_;
   std::shared_ptr<const Sky> known_sky_;
   Harmonics known_harmonics_;  ///< of it

@@ -190,6 +190,8 @@ TEST_F(CommandLineRender, Refuses) {
   refused({"--size", "99999999x2"}, {"width is 99999999", "choose another size"});
   refused({"--shadow-map", "0"}, {"--shadow-map"});
   refused({"--shadow-map", "99999999"}, {"99999999", "choose another size"});
+  refused({"--cascades", "5"}, {"--cascades: '5'", "auto or 1 to 4"});
+  refused({"--cascades", "0"}, {"--cascades: '0'"});
   refused({"--sun", "abc"}, {"--sun: 'abc' is no list of numbers; separate them by commas"});
   refused({"--sun", "1"}, {"--sun: '1' has 1 numbers; write 2"});
   refused({"--sun", "1,nan"}, {"--sun: "});

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "render/cascades.h"
 #include "render/mipmaps.h"
-#include "render/shadow_pass.h"
 #include "render_fixture.h"
 #include "scene/ground_texture.h"
 #include "shared/density.h"

@@ -86,8 +86,12 @@ struct View {
   /// n of AmbientSource::kLeafVisibility, > 0: above 1 leaves darken rapidly inwards, below slowly.
   float visibility_exponent = 1.0f;
   Exposure exposure;
-  float bloom = 0.01f;  ///< share of the light that lens and eye spread, [0, 1]
-  int shadow_map_size = 2048;
+  float bloom = 0.01f;         ///< share of the light that lens and eye spread, [0, 1]
+  int shadow_map_size = 2048;  ///< side of each of the sun's maps, pixels, at least 16
+  /// Most of the sun's maps: one of the whole scene, the others finer and finer around the eye,
+  /// where they are finer than it. 1 to 4; 0 = as many as it takes to keep their texels under two
+  /// pixels of the picture, which may change while the camera moves.
+  int shadow_cascades = 0;
   /// Linear display RGB in [0, 1] instead of the sky and the sun's disk; not exposed.
   std::optional<glm::vec3> background;
   bool hdr = false;  ///< Frame::hdr is wanted, too
@@ -106,8 +110,9 @@ struct Frame {
   /// range that the daylight sets. Background is black. Empty unless View::hdr.
   HdrImage hdr;
   float average_luminance =
-      0.0f;            ///< kcd/m^2: log-average of the picture, or what the EV stands for
-  float white = 0.0f;  ///< white point of the picture, in scaled luminance
+      0.0f;                 ///< kcd/m^2: log-average of the picture, or what the EV stands for
+  float white = 0.0f;       ///< white point of the picture, in scaled luminance
+  int shadow_cascades = 1;  ///< maps of the sun that were drawn
   FrameTimes times;
 };
 

@@ -108,6 +108,7 @@ struct RenderCommand : SceneOptions {
   float visibility_exponent = 1.0f;
   std::string background;
   int shadow_map = 2048;
+  std::string cascades = "auto";
   DeviceOptions device;
   bool json = false;
 };

@@ -232,6 +232,9 @@ int run(int argc, char** argv) {
   render_app->add_option("--background", render.background, "R,G,B in [0, 1] instead of the sky");
   render_app->add_option("--shadow-map", render.shadow_map, "Side of the shadow map, pixels")
       ->capture_default_str();
+  render_app
+      ->add_option("--cascades", render.cascades, "Shadow maps, finer near the eye: auto or 1 to 4")
+      ->capture_default_str();
   addDeviceOptions(*render_app, render.device);
   constexpr const char* kBakeGroup = "Density field (given any, the file's own bake is left)";
   addBakeOptions(*render_app, render.bake, kBakeGroup);

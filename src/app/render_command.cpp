@@ -146,6 +146,12 @@ void runRender(const RenderCommand& command) {
   if (command.shadow_map < 16)
     throw Error("--shadow-map", "must be at least 16 pixels", "2048 is usual");
   view.shadow_map_size = command.shadow_map;
+  if (command.cascades != "auto") {
+    if (command.cascades.size() != 1 || command.cascades[0] < '1' || command.cascades[0] > '4')
+      throw Error("--cascades", fmt::format("'{}' is out of range", command.cascades),
+                  "choose auto or 1 to 4");
+    view.shadow_cascades = command.cascades[0] - '0';
+  }
   // The preset `expressive` means the field of its paper.
   const BakeField field = command.bake.fieldOr(
       command.light == "expressive" ? BakeField::kMetaball : BakeField::kOpticalDepth);
@@ -213,6 +219,7 @@ void runRender(const RenderCommand& command) {
                                       {"tone_ms", frame.times.tone_ms},
                                       {"average_kcd_m2", frame.average_luminance},
                                       {"white", frame.white},
+                                      {"shadow_cascades", frame.shadow_cascades},
                                       {"validation_messages", renderer.validationMessages()}}
                    .dump(2));
   else

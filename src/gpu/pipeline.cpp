@@ -102,13 +102,19 @@ vk::raii::Pipeline makeComputePipeline(const Device& device, SpirV code,
 vk::raii::PipelineLayout makePipelineLayout(const Device& device,
                                             std::span<const vk::DescriptorSetLayout> sets,
                                             vk::ShaderStageFlags push_stages,
-                                            std::uint32_t push_bytes) {
-  const vk::PushConstantRange push{.stageFlags = push_stages, .size = push_bytes};
+                                            std::uint32_t push_bytes,
+                                            std::uint32_t vertex_push_bytes) {
+  std::vector<vk::PushConstantRange> ranges;
+  if (push_bytes > 0) ranges.push_back({.stageFlags = push_stages, .size = push_bytes});
+  if (vertex_push_bytes > 0)
+    ranges.push_back({.stageFlags = vk::ShaderStageFlagBits::eVertex,
+                      .offset = push_bytes,
+                      .size = vertex_push_bytes});
   return device.raii().createPipelineLayout(
       {.setLayoutCount = static_cast<std::uint32_t>(sets.size()),
        .pSetLayouts = sets.data(),
-       .pushConstantRangeCount = push_bytes > 0 ? 1u : 0u,
-       .pPushConstantRanges = &push});
+       .pushConstantRangeCount = static_cast<std::uint32_t>(ranges.size()),
+       .pPushConstantRanges = ranges.data()});
 }
 
 vk::raii::DescriptorSetLayout makeSetLayout(const Device& device,

@@ -41,11 +41,13 @@ struct GraphicsRequest {
 vk::raii::Pipeline makeGraphicsPipeline(const Device& device, const GraphicsRequest& request);
 vk::raii::Pipeline makeComputePipeline(const Device& device, SpirV code, vk::PipelineLayout layout);
 
-/// A pipeline layout of these sets and one push-constant range from 0 (0 bytes = none).
+/// A pipeline layout of these sets, one push-constant range from 0 (0 bytes = none), and right
+/// behind it another of the vertex stage alone.
 vk::raii::PipelineLayout makePipelineLayout(const Device& device,
                                             std::span<const vk::DescriptorSetLayout> sets,
                                             vk::ShaderStageFlags push_stages = {},
-                                            std::uint32_t push_bytes = 0);
+                                            std::uint32_t push_bytes = 0,
+                                            std::uint32_t vertex_push_bytes = 0);
 
 /// A set layout of single descriptors at bindings 0, 1, 2, ...
 vk::raii::DescriptorSetLayout makeSetLayout(const Device& device,

@@ -25,24 +25,35 @@ Texture makeTexture(const Device& device, const ImageRequest& request) {
                 std::to_string(request.width) + " x " + std::to_string(request.height) +
                     " pixels are not between 1 and the device's limit of " + std::to_string(limit),
                 "choose another size");
+  const std::uint32_t layers = std::max(request.layers, 1u);
+  if (layers > device.limits().maxImageArrayLayers)
+    throw Error("image", std::to_string(layers) + " layers are more than the device has",
+                "choose fewer");
   Texture made;
   made.request = request;
   made.image = device.raii().createImage({.imageType = vk::ImageType::e2D,
                                           .format = request.format,
                                           .extent = {request.width, request.height, 1},
                                           .mipLevels = request.mips,
-                                          .arrayLayers = 1,
+                                          .arrayLayers = layers,
                                           .samples = request.samples,
                                           .usage = request.usage});
   made.memory =
       device.memory().allocate(made.image.getMemoryRequirements(), MemoryUse::kDevice, true);
   made.image.bindMemory(*made.memory.block->memory, made.memory.offset);
-  made.view = device.raii().createImageView(
-      {.image = *made.image,
-       .viewType = vk::ImageViewType::e2D,
-       .format = request.format,
-       .subresourceRange = {
-           .aspectMask = request.aspect, .levelCount = request.mips, .layerCount = 1}});
+  const auto viewOf = [&](vk::ImageViewType type, std::uint32_t first, std::uint32_t count) {
+    return device.raii().createImageView({.image = *made.image,
+                                          .viewType = type,
+                                          .format = request.format,
+                                          .subresourceRange = {.aspectMask = request.aspect,
+                                                               .levelCount = request.mips,
+                                                               .baseArrayLayer = first,
+                                                               .layerCount = count}});
+  };
+  using Type = vk::ImageViewType;
+  made.view = viewOf(request.layers > 0 ? Type::e2DArray : Type::e2D, 0, layers);
+  for (std::uint32_t layer = 0; layer < request.layers; ++layer)
+    made.layer_views.push_back(viewOf(Type::e2D, layer, 1));
   return made;
 }
 

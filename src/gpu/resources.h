@@ -23,6 +23,7 @@ struct ImageRequest {
   vk::Format format = vk::Format::eUndefined;
   std::uint32_t width = 1, height = 1;
   std::uint32_t mips = 1;
+  std::uint32_t layers = 0;  ///< of a 2-D array; 0 = no array
   vk::SampleCountFlagBits samples = vk::SampleCountFlagBits::e1;
   vk::ImageUsageFlags usage;
   vk::ImageAspectFlags aspect = vk::ImageAspectFlagBits::eColor;
@@ -33,10 +34,11 @@ struct Texture {
   Allocation memory;
   vk::raii::Image image = nullptr;
   vk::raii::ImageView view = nullptr;
+  std::vector<vk::raii::ImageView> layer_views;  ///< of an array: to draw to
   ImageRequest request;
 };
 
-/// Throws Error if the size is over the device's limit.
+/// Throws Error if the size or the number of layers is over the device's limit.
 Texture makeTexture(const Device& device, const ImageRequest& request);
 
 /// One level of an 8-bit RGBA picture on the CPU.

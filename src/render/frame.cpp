@@ -22,7 +22,7 @@ gpu::SetLayout makeFrameSet(const gpu::Device& device) {
   using Stage = vk::ShaderStageFlagBits;
   const Type image = Type::eCombinedImageSampler;
   return {device,
-          {Type::eUniformBuffer, image, image, image, image, image, image},
+          {Type::eUniformBuffer, image, image, image, image, image, image, image},
           Stage::eVertex | Stage::eFragment};
 }
 
@@ -61,7 +61,7 @@ FrameLayout::FrameLayout(const gpu::Device& device)
       material_set(makeMaterialSet(device)),
       pipeline(gpu::makePipelineLayout(device, std::array{*frame_set.layout, *material_set},
                                        vk::ShaderStageFlagBits::eFragment,
-                                       sizeof(shared::DrawUniforms))) {}
+                                       sizeof(shared::DrawUniforms), sizeof(std::uint32_t))) {}
 
 FrameDrawer::FrameDrawer(const gpu::Device& device)
     : device_(&device),
@@ -86,6 +86,7 @@ FrameDrawer::FrameDrawer(const gpu::Device& device)
   using Beyond = vk::SamplerAddressMode;
   ground_sampler_ = gpu::makeSampler(device, vk::Filter::eLinear, Beyond::eRepeat);
   edge_sampler_ = gpu::makeSampler(device, vk::Filter::eLinear, Beyond::eClampToEdge);
+  texel_sampler_ = gpu::makeSampler(device, vk::Filter::eNearest, Beyond::eClampToEdge);
   sky_sampler_ = device.raii().createSampler({.magFilter = vk::Filter::eLinear,
                                               .minFilter = vk::Filter::eLinear,
                                               .addressModeU = Beyond::eRepeat,
@@ -127,6 +128,8 @@ void FrameDrawer::checkView(const View& view) const {
   const auto demand = [](bool good, const char* what, const char* range) {
     if (!good) throw Error("view", std::string(what) + " is out of range", range);
   };
+  demand(view.shadow_cascades >= 0 && view.shadow_cascades <= shared::kMostCascades,
+         "shadow_cascades", "choose 1 to 4, or 0 for as many as the view needs");
   demand(view.sky_bands >= 2 && view.sky_bands <= kMaxBands, "sky_bands", "choose 2 to 7");
   demand(view.exposure.key > 0.0f && std::isfinite(view.exposure.key), "exposure.key",
          "choose a number above 0");
@@ -151,30 +154,51 @@ void FrameDrawer::resize(const View& view) {
     bloom_pass_.setSource(targets_->resolved);
     tone_pass_.setSource(targets_->color, bloom_pass_.result(), exposure_pass_.result());
   }
+}
+
+std::vector<Cascade> FrameDrawer::cascadesOf(const GpuScene& scene, const View& view) {
   const auto size = static_cast<std::uint32_t>(view.shadow_map_size);
-  if (!shadow_map_ || shadow_map_->request.width != size) {
+  std::vector<Cascade> cascades =
+      fitCascades({.camera = cascade_trial_.camera.value_or(view.camera),
+                   .width = view.width,
+                   .height = view.height,
+                   .bounds = scene.bounds(),
+                   .to_sun = view.daylight.sun.direction,
+                   .size = view.shadow_map_size,
+                   .count = view.terms.shadow ? view.shadow_cascades : 1,
+                   .snap = cascade_trial_.snap});
+  // Layers that are there stay when fewer are needed: the next frame may need them again.
+  const auto layers = static_cast<std::uint32_t>(cascades.size());
+  if (!shadow_maps_ || shadow_maps_->request.width != size ||
+      shadow_maps_->request.layers < layers) {
     using Usage = vk::ImageUsageFlagBits;
-    shadow_map_.reset();
-    shadow_map_ =
+    shadow_maps_.reset();
+    shadow_maps_ =
         gpu::makeTexture(*device_, {.format = FrameLayout::kDepth,
                                     .width = size,
                                     .height = size,
+                                    .layers = layers,
                                     .usage = Usage::eDepthStencilAttachment | Usage::eSampled,
                                     .aspect = kDepthAspect});
-    frame_set_.setTexture(1, *shadow_map_, *shadow_sampler_);
+    frame_set_.setTexture(1, *shadow_maps_, *shadow_sampler_);
+    frame_set_.setTexture(7, *shadow_maps_, *texel_sampler_);
   }
-  // A single texel stands in where the leaves are in the shadow map.
-  const std::uint32_t foliage_size =
-      view.terms.shadow_source == ShadowSource::kShadowMap ? 1 : size;
-  if (!foliage_map_ || foliage_map_->request.width != foliage_size) {
+  // A single texel stands in where leaves are in the shadow map.
+  const bool depth_maps = view.terms.shadow_source != ShadowSource::kShadowMap;
+  const std::uint32_t foliage_size = depth_maps ? size : 1;
+  if (!foliage_maps_ || foliage_maps_->request.width != foliage_size ||
+      foliage_maps_->request.layers < layers) {
     using Usage = vk::ImageUsageFlagBits;
-    foliage_map_.reset();
-    foliage_map_ = gpu::makeTexture(*device_, {.format = FrameLayout::kFoliageDepth,
-                                               .width = foliage_size,
-                                               .height = foliage_size,
-                                               .usage = Usage::eColorAttachment | Usage::eSampled});
-    frame_set_.setTexture(6, *foliage_map_, *edge_sampler_);
+    foliage_maps_.reset();
+    foliage_maps_ =
+        gpu::makeTexture(*device_, {.format = FrameLayout::kFoliageDepth,
+                                    .width = foliage_size,
+                                    .height = foliage_size,
+                                    .layers = layers,
+                                    .usage = Usage::eColorAttachment | Usage::eSampled});
+    frame_set_.setTexture(6, *foliage_maps_, *edge_sampler_);
   }
+  return cascades;
 }
 
 const Harmonics& FrameDrawer::skyOf(const View& view) {
@@ -187,7 +211,8 @@ const Harmonics& FrameDrawer::skyOf(const View& view) {
 }
 
 shared::FrameUniforms FrameDrawer::makeUniforms(const GpuScene& scene, const View& view,
-                                                const FrameLight& light, float units) const {
+                                                const FrameLight& light, float units,
+                                                const std::vector<Cascade>& cascades) const {
   shared::FrameUniforms u{};
   const float aspect = static_cast<float>(view.width) / static_cast<float>(view.height);
   const CameraRays rays = cameraRays(view.camera, aspect);
@@ -196,9 +221,13 @@ shared::FrameUniforms FrameDrawer::makeUniforms(const GpuScene& scene, const Vie
   u.ray_right = glm::vec4(rays.right, 2.0f / static_cast<float>(view.width));
   u.ray_down = glm::vec4(rays.down, 2.0f / static_cast<float>(view.height));
   u.ray_forward = glm::vec4(rays.forward, 0.0f);
-  const ShadowFit fit = fitShadow(scene.bounds(), light.to_sun, view.shadow_map_size);
-  u.shadow_from_world = fit.shadow_from_world;
-  u.to_sun = glm::vec4(light.to_sun, fit.texel_m);
+  for (std::size_t i = 0; i < cascades.size(); ++i) {
+    const Cascade& next = cascades[std::min(i + 1, cascades.size() - 1)];
+    u.shadow_from_world[i] = cascades[i].shadow_from_world;
+    u.cascade[i] = glm::vec4(cascades[i].texel_m, next.texel_m / cascades[i].texel_m,
+                             glm::vec2(cascades[i].origin));
+  }
+  u.to_sun = glm::vec4(light.to_sun, cascades.size());
   u.sun_light = glm::vec4(light.sun * units, 1.0f / static_cast<float>(view.shadow_map_size));
   u.sun_disk = glm::vec4(light.sun_disk * units, view.daylight.sun.angular_radius);
   u.open_sky = glm::vec4(light.open_sky * units, view.visibility_exponent);
@@ -208,7 +237,7 @@ shared::FrameUniforms FrameDrawer::makeUniforms(const GpuScene& scene, const Vie
   const float haze = std::max(look::kHazeHalf * distance, look::kHazeHalfLeast_m);
   u.ground = glm::vec4(scene.groundHeight(), look::kGroundRadius * haze, haze, look::kGroundTile_m);
   u.ground_map = glm::vec4(ground_light_.place(), 0.0f);
-  u.leaf_tint = glm::vec4(scene.leafTint(), std::tan(view.daylight.sun.angular_radius));
+  u.leaf_tint = glm::vec4(scene.leafTint(), 0.0f);
   if (view.daylight.sky != nullptr && view.daylight.sky->formula() != nullptr)
     u.sky = *view.daylight.sky->formula();
   return u;
@@ -284,7 +313,8 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
     weights = transferWeights(light, view.daylight.sun.angular_radius, units);
     ground_light_.update(scene.grounds(), scene_id_, weights, light.open_sky * units);
   }
-  const shared::FrameUniforms uniforms = makeUniforms(scene, view, light, units);
+  const std::vector<Cascade> cascades = cascadesOf(scene, view);
+  const shared::FrameUniforms uniforms = makeUniforms(scene, view, light, units, cascades);
   std::memcpy(uniforms_.memory.mapped(), &uniforms, sizeof(uniforms));
   const DrawKind kind = kindOf(view);
   const bool depth_maps = view.terms.shadow_source != ShadowSource::kShadowMap;
@@ -298,12 +328,14 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
     sky_image_.record(commands);
     ground_light_.record(commands);
     if (!weights.empty()) transfer_pass_.record(commands, scene.transfer(), std::move(weights));
+    const auto cascade_count = static_cast<std::uint32_t>(cascades.size());
     if (depth_maps) {
-      light_depth_pass_.record(commands, layout_, *frame_set_, scene, *shadow_map_, *foliage_map_,
-                               view.terms);
+      light_depth_pass_.record(commands, layout_, *frame_set_, scene, *shadow_maps_, *foliage_maps_,
+                               cascade_count, view.terms);
     } else {
-      shadow_pass_.record(commands, layout_, *frame_set_, scene, *shadow_map_, view.terms.shadow);
-      gpu::imageBarrier(commands, *foliage_map_->image, kColorAspect, gpu::Use::kUndefined,
+      shadow_pass_.record(commands, layout_, *frame_set_, scene, *shadow_maps_, cascade_count,
+                          view.terms.shadow);
+      gpu::imageBarrier(commands, *foliage_maps_->image, kColorAspect, gpu::Use::kUndefined,
                         gpu::Use::kFragmentSampled);
     }
     timers_.stamp(commands, 1);
@@ -323,6 +355,7 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
       frame.average_luminance > 0.0f ? view.exposure.key / frame.average_luminance : 0.0f;
   frame.white =
       view.exposure.white.value_or(shared::automaticWhite(measured.bright / units * exposure));
+  frame.shadow_cascades = static_cast<int>(cascades.size());
   frame.times.shadow_ms = timers_.milliseconds(0, 1);
   frame.times.color_ms = timers_.milliseconds(1, 2);
   frame.times.tone_ms = timers_.milliseconds(2, 3);

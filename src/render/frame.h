@@ -6,6 +6,7 @@
 #include "gpu/timers.h"
 #include "render/backdrop_pass.h"
 #include "render/bloom_pass.h"
+#include "render/cascades.h"
 #include "render/exposure_pass.h"
 #include "render/frame_layout.h"
 #include "render/frame_light.h"
@@ -32,12 +33,21 @@ class FrameDrawer {
   /// Draws and reads back. Throws Error for sizes out of range.
   Frame draw(GpuScene& scene, const View& view);
 
+  /// In tests alone, which look at what moves in a picture when only the cascades do.
+  struct CascadeTrial {
+    std::optional<Camera> camera = {};  ///< that cascades are fitted to, instead of the view's
+    bool snap = true;                   ///< CascadeRequest::snap
+  };
+  void tryCascades(const CascadeTrial& trial) { cascade_trial_ = trial; }
+
  private:
   void checkView(const View& view) const;
   void resize(const View& view);
+  std::vector<Cascade> cascadesOf(const GpuScene& scene, const View& view);
   const Harmonics& skyOf(const View& view);
   shared::FrameUniforms makeUniforms(const GpuScene& scene, const View& view,
-                                     const FrameLight& light, float units) const;
+                                     const FrameLight& light, float units,
+                                     const std::vector<Cascade>& cascades) const;
   void recordColor(const vk::raii::CommandBuffer& commands, const GpuScene& scene, const View& view,
                    const DrawKind& kind) const;
   void recordTone(const vk::raii::CommandBuffer& commands, const View& view, float units) const;
@@ -57,12 +67,14 @@ class FrameDrawer {
   vk::raii::Sampler ground_sampler_ = nullptr;  ///< repeats both ways
   vk::raii::Sampler sky_sampler_ = nullptr;     ///< repeats around the horizon
   vk::raii::Sampler edge_sampler_ = nullptr;
+  vk::raii::Sampler texel_sampler_ = nullptr;  ///< the nearest texel
   vk::raii::Sampler shadow_sampler_ = nullptr;
   gpu::Buffer uniforms_;
   gpu::DescriptorSet frame_set_;
   SkyImage sky_image_;
   GroundLight ground_light_;
-  std::optional<gpu::Texture> shadow_map_, foliage_map_;
+  std::optional<gpu::Texture> shadow_maps_, foliage_maps_;  ///< a layer for each cascade
+  CascadeTrial cascade_trial_;
   std::optional<Targets> targets_;
   std::shared_ptr<const Sky> known_sky_;
   Harmonics known_harmonics_;  ///< of it

@@ -48,54 +48,63 @@ void LightDepthPass::prepare(const gpu::Device& device, const FrameLayout& layou
 
 void LightDepthPass::record(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,
                             vk::DescriptorSet frame_set, const GpuScene& scene,
-                            const gpu::Texture& wood_map, const gpu::Texture& foliage_map,
-                            const Terms& terms) const {
+                            const gpu::Texture& wood_maps, const gpu::Texture& foliage_maps,
+                            std::uint32_t count, const Terms& terms) const {
   const vk::ImageAspectFlags depth_aspect = vk::ImageAspectFlagBits::eDepth;
   const vk::ImageAspectFlags color_aspect = vk::ImageAspectFlagBits::eColor;
-  gpu::imageBarrier(commands, *wood_map.image, depth_aspect, gpu::Use::kUndefined,
+  gpu::imageBarrier(commands, *wood_maps.image, depth_aspect, gpu::Use::kUndefined,
                     gpu::Use::kDepthAttachment);
-  gpu::imageBarrier(commands, *foliage_map.image, color_aspect, gpu::Use::kUndefined,
+  gpu::imageBarrier(commands, *foliage_maps.image, color_aspect, gpu::Use::kUndefined,
                     gpu::Use::kColorAttachment);
-  const vk::RenderingAttachmentInfo foliage{
-      .imageView = *foliage_map.view,
-      .imageLayout = vk::ImageLayout::eColorAttachmentOptimal,
-      .loadOp = vk::AttachmentLoadOp::eClear,
-      .storeOp = vk::AttachmentStoreOp::eStore,
-      .clearValue = vk::ClearValue(vk::ClearColorValue(std::array{0.0f, 0.0f, 0.0f, 0.0f}))};
-  const vk::RenderingAttachmentInfo wood{
-      .imageView = *wood_map.view,
-      .imageLayout = vk::ImageLayout::eDepthAttachmentOptimal,
-      .loadOp = vk::AttachmentLoadOp::eClear,
-      .storeOp = vk::AttachmentStoreOp::eStore,
-      .clearValue = vk::ClearValue(vk::ClearDepthStencilValue{.depth = 1.0f})};
-  const vk::Rect2D area{.extent = {wood_map.request.width, wood_map.request.height}};
-  commands.beginRendering({.renderArea = area,
-                           .layerCount = 1,
-                           .colorAttachmentCount = 1,
-                           .pColorAttachments = &foliage,
-                           .pDepthAttachment = &wood});
-  if (terms.shadow && !scene.draws().empty()) {
+  for (std::uint32_t cascade = 0; cascade < count; ++cascade) {
+    const vk::RenderingAttachmentInfo foliage{
+        .imageView = *foliage_maps.layer_views[cascade],
+        .imageLayout = vk::ImageLayout::eColorAttachmentOptimal,
+        .loadOp = vk::AttachmentLoadOp::eClear,
+        .storeOp = vk::AttachmentStoreOp::eStore,
+        .clearValue = vk::ClearValue(vk::ClearColorValue(std::array{0.0f, 0.0f, 0.0f, 0.0f}))};
+    const vk::RenderingAttachmentInfo wood{
+        .imageView = *wood_maps.layer_views[cascade],
+        .imageLayout = vk::ImageLayout::eDepthAttachmentOptimal,
+        .loadOp = vk::AttachmentLoadOp::eClear,
+        .storeOp = vk::AttachmentStoreOp::eStore,
+        .clearValue = vk::ClearValue(vk::ClearDepthStencilValue{.depth = 1.0f})};
+    const vk::Rect2D area{.extent = {wood_maps.request.width, wood_maps.request.height}};
+    commands.beginRendering({.renderArea = area,
+                             .layerCount = 1,
+                             .colorAttachmentCount = 1,
+                             .pColorAttachments = &foliage,
+                             .pDepthAttachment = &wood});
     commands.setViewport(0, vk::Viewport{.width = static_cast<float>(area.extent.width),
                                          .height = static_cast<float>(area.extent.height),
                                          .maxDepth = 1.0f});
     commands.setScissor(0, area);
-    scene.bindVertices(commands, NormalSource::kLeaf);
-    for (const Draw& draw : scene.draws()) {  // wood comes first
-      commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
-                            *pipelines_.at(constantsOf(draw, terms)));
-      commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout.pipeline, 0,
-                                  {frame_set, scene.materialSet(draw.material)}, nullptr);
-      commands.pushConstants<shared::DrawUniforms>(
-          *layout.pipeline, vk::ShaderStageFlagBits::eFragment, 0, draw.uniforms);
-      commands.drawIndexed(draw.index_count, draw.instance_count, draw.first_index,
-                           draw.vertex_offset, draw.first_instance);
-    }
+    if (terms.shadow) drawCasters(commands, layout, frame_set, scene, cascade, terms);
+    commands.endRendering();
   }
-  commands.endRendering();
-  gpu::imageBarrier(commands, *wood_map.image, depth_aspect, gpu::Use::kDepthAttachment,
+  gpu::imageBarrier(commands, *wood_maps.image, depth_aspect, gpu::Use::kDepthAttachment,
                     gpu::Use::kFragmentSampled);
-  gpu::imageBarrier(commands, *foliage_map.image, color_aspect, gpu::Use::kColorAttachment,
+  gpu::imageBarrier(commands, *foliage_maps.image, color_aspect, gpu::Use::kColorAttachment,
                     gpu::Use::kFragmentSampled);
+}
+
+void LightDepthPass::drawCasters(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,
+                                 vk::DescriptorSet frame_set, const GpuScene& scene,
+                                 std::uint32_t cascade, const Terms& terms) const {
+  if (scene.draws().empty()) return;
+  scene.bindVertices(commands, NormalSource::kLeaf);
+  commands.pushConstants<std::uint32_t>(*layout.pipeline, vk::ShaderStageFlagBits::eVertex,
+                                        sizeof(shared::DrawUniforms), cascade);
+  for (const Draw& draw : scene.draws()) {  // wood comes first
+    commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
+                          *pipelines_.at(constantsOf(draw, terms)));
+    commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout.pipeline, 0,
+                                {frame_set, scene.materialSet(draw.material)}, nullptr);
+    commands.pushConstants<shared::DrawUniforms>(
+        *layout.pipeline, vk::ShaderStageFlagBits::eFragment, 0, draw.uniforms);
+    commands.drawIndexed(draw.index_count, draw.instance_count, draw.first_index,
+                         draw.vertex_offset, draw.first_instance);
+  }
 }
 
 }  // namespace verdure

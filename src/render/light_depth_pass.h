@@ -15,13 +15,18 @@ class LightDepthPass {
  public:
   void prepare(const gpu::Device& device, const FrameLayout& layout, const GpuScene& scene,
                const Terms& terms);
-  /// Both maps are of one size and used as kFragmentSampled afterwards. Without `casters` they stay
+  /// Draws the cascades of frame.shadow_from_world into the first `count` layers of both maps,
+  /// which are of one size and used as kFragmentSampled afterwards. Without shadows they stay
   /// empty.
   void record(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,
-              vk::DescriptorSet frame_set, const GpuScene& scene, const gpu::Texture& wood_map,
-              const gpu::Texture& foliage_map, const Terms& terms) const;
+              vk::DescriptorSet frame_set, const GpuScene& scene, const gpu::Texture& wood_maps,
+              const gpu::Texture& foliage_maps, std::uint32_t count, const Terms& terms) const;
 
  private:
+  void drawCasters(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,
+                   vk::DescriptorSet frame_set, const GpuScene& scene, std::uint32_t cascade,
+                   const Terms& terms) const;
+
   std::map<gpu::Constants, vk::raii::Pipeline> pipelines_;
 };
 

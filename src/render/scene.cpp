@@ -71,7 +71,8 @@ class Packer {
       out_.instances.push_back({rows[0], rows[1], rows[2]});
     }
     const std::size_t first_draw = out_.draws.size();
-    glm::dvec4 tint(0.0);
+    glm::dvec4 leaves(0.0);
+    double leaf_indices = 0.0;
     for (std::size_t m = 0; m < plant.meshes.size(); ++m) {
       const MeshLight* light = item.light != nullptr ? &item.light->meshes[m] : nullptr;
       Draw draw = packMesh(plant, plant.meshes[m], light, any_baked);
@@ -89,7 +90,8 @@ class Packer {
       if (draw.foliage) {
         draw.uniforms.leaf = glm::vec4(shared::leafTint(draw.uniforms.matt),
                                        shared::leafOpticalDepth(draw.uniforms.matt));
-        tint += double(draw.index_count) * glm::dvec4(glm::dvec3(draw.uniforms.leaf), 1.0);
+        leaves += double(draw.index_count) * glm::dvec4(draw.uniforms.leaf);
+        leaf_indices += double(draw.index_count);
       }
       out_.draws.push_back(draw);
     }
@@ -97,8 +99,8 @@ class Packer {
     for (std::size_t d = first_draw; d < out_.draws.size(); ++d)
       if (!out_.draws[d].foliage)
         out_.draws[d].uniforms.leaf =
-            glm::vec4(tint.w > 0.0 ? glm::vec3(glm::dvec3(tint) / tint.w) : glm::vec3(1.0f), 0.0f);
-    leaf_tint_ += tint;
+            leaf_indices > 0.0 ? glm::vec4(leaves / leaf_indices) : glm::vec4(1.0f);
+    leaf_tint_ += glm::dvec4(glm::dvec3(leaves), leaf_indices);
     growBounds(bounds(plant), first_instance);
   }
 

@@ -141,7 +141,7 @@ void main() {
   if (kShadow && (diffuse != vec3(0.0) || specular > 0.0)) {
     vec3 face = cross(p_x, p_y);
     visibility = sunVisibility(position, dot(face, face) > 0.0 ? normalize(face) : n,
-                               draw.leaf);
+                               draw.leaf, false);
   }
   vec3 lit = illumination(ambient, frame.sun_light.rgb, visibility, diffuse,
                           highlightStrength(draw.surface.z), specular);

@@ -1,4 +1,5 @@
-// S of (1): the share of the sun seen from a point, by the shadow map and the light depth map.
+// S of (1): the share of the sun seen from a point, by the shadow maps and the light depth maps.
+#include "cascades.glsl"
 #include "foliage_shadow.glsl"
 
 // Twelve points of a disk of radius 1, evenly spread (no two nearer than 0.45) and centred.
@@ -6,45 +7,133 @@ const vec2 kPoissonDisk[12] = vec2[](
     vec2(0.1854, 0.4768), vec2(-0.1024, -0.8681), vec2(0.7568, -0.4699), vec2(-0.6557, 0.0262),
     vec2(-0.0339, -0.1492), vec2(0.8430, 0.3558), vec2(-0.7196, -0.5347), vec2(-0.2571, 0.3055),
     vec2(0.4997, -0.0542), vec2(0.0117, 0.9999), vec2(0.2522, -0.5537), vec2(-0.7800, 0.4656));
-// Four points of a circle.
+/// Four points of the same disk: with bilinear taps of maps as smooth as those of leaves they do.
 const vec2 kSquare[4] = vec2[](vec2(0.7, 0.0), vec2(0.0, 0.7), vec2(-0.7, 0.0), vec2(0.0, -0.7));
-/// Radius of that disk in texels of the shadow map. With the bilinear comparison of each tap the
+/// Radius of that disk in texels of a shadow map. With the bilinear comparison of each tap the
 /// half-shadow of an edge is about 4 texels wide: 2 cm for a 10 m tree and a map of 2048, the width
 /// of the sun's own half-shadow 2 m behind the edge.
 const float kPoissonRadius = 1.7;
 
-/// Bilinear comparisons on a disk turned by an angle of its own for each texel of the map (Habel
-/// 2009, 5.5). The angle hangs on the world, not on the picture, so nothing swims when the camera
-/// moves. `geometric_normal` is the triangle's own, on either side. The point is moved off its
-/// surface, towards the sun's side, by the reach of the filter: in the normal's direction where the
-/// sun grazes it, towards the sun where it does not. A surface therefore never shades itself, and
-/// the shadow of another is displaced by less than three texels. `leaf`: as throughLeaves() has it.
-/// The map of leaves is so smooth that four taps of each map do.
-vec3 sunVisibility(vec3 world_position, vec3 geometric_normal, vec4 leaf) {
+/// Towards the border of a map the disk grows, by this factor at most, to meet that of the next.
+const float kWidestPoisson = 2.0;
+
+/// Half-shadows are at most this wide, texels: few taps further apart would be seen one by one.
+const float kWidestShadow = 24.0;
+
+/// Where a cascade's maps are read for a point: `at`, the point moved off its surface, depth not
+/// beyond the farthest in the map; `z`, the same without that end; `turn`: the disk of taps' radius
+/// and angle.
+struct ShadowLookup {
+  int cascade;
+  vec3 at;
+  float z;
+  vec2 turn;
+};
+
+vec2 tapOf(ShadowLookup from, vec2 q) {
+  return from.at.xy +
+         vec2(from.turn.x * q.x - from.turn.y * q.y, from.turn.y * q.x + from.turn.x * q.y);
+}
+
+/// 1 in front of the nearest surface of the shadow map, 0 behind it, between them near its edges.
+float openTap(ShadowLookup from, vec2 tap) {
+  // Arrays have no textureLod with comparison; a single mip needs no derivatives.
+  return texture(shadow_map, vec4(tap, float(from.cascade), from.at.z));
+}
+
+/// All or nothing, by the nearest surface.
+float shadowMapVisibility(ShadowLookup from) {
+  float sum = 0.0;
+  for (int i = 0; i < 12; ++i) sum += openTap(from, tapOf(from, kPoissonDisk[i]));
+  return sum / 12.0;
+}
+
+/// Mean distance from the point to what is in front of it, m, 0 if nothing is: leaves, halfway
+/// between the first and the last one, and wood. It is looked for over all that may hide the sun.
+float blockerDistance(ShadowLookup from, float depth_per_m) {
+  float widest = min(from.z / depth_per_m * tan(frame.sun_disk.w) / frame.cascade[from.cascade].x,
+                     kWidestShadow);
+  ShadowLookup wide = from;
+  wide.turn = normalize(from.turn) * (max(widest, kPoissonRadius) * frame.sun_light.w);
+  vec2 sum = vec2(0.0);
+  for (int i = 0; i < 8; ++i) {
+    vec3 tap = vec3(tapOf(wide, kPoissonDisk[i]), float(from.cascade));
+    LeafLayers layers = leafLayers(textureLod(foliage_map, tap, 0.0));
+    sum += layers.covered * vec2(from.z - 0.5 * (layers.near + layers.far), 1.0);
+    float wood = textureLod(shadow_depth, tap, 0.0).r;
+    if (wood < from.at.z) sum += vec2(from.z - wood, 1.0);
+  }
+  return sum.y > 0.0 ? max(sum.x, 0.0) / (sum.y * depth_per_m) : 0.0;
+}
+
+/// What wood leaves open and leaves let through. `soft`: with the half-shadow of the sun's disk, as
+/// wide as what casts it is far away (after Fernando, "Percentage-Closer Soft Shadows", 2005, where
+/// the distance is known from the depth maps anyway); for surfaces that cast no shadow themselves.
+vec3 layeredVisibility(ShadowLookup from, vec4 leaf, bool soft) {
+  float depth_per_m = depthPerMetre(from.cascade);
+  if (soft) {
+    float distance = blockerDistance(from, depth_per_m);
+    if (distance <= 0.0) return vec3(1.0);
+    float radius = distance * tan(frame.sun_disk.w) / frame.cascade[from.cascade].x;
+    float texels = length(from.turn) / frame.sun_light.w;
+    from.turn *= clamp(radius, texels, max(texels, kWidestShadow)) / texels;
+  }
+  vec3 sum = vec3(0.0);
+  if (soft) {
+    for (int i = 0; i < 12; ++i) {
+      vec2 tap = tapOf(from, kPoissonDisk[i]);
+      sum += openTap(from, tap) * throughLeaves(from.cascade, tap, from.z, depth_per_m, leaf);
+    }
+    return sum / 12.0;
+  }
+  float open = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    vec2 tap = tapOf(from, kSquare[i]);
+    open += openTap(from, tap);
+    sum += throughLeaves(from.cascade, tap, from.z, depth_per_m, leaf);
+  }
+  return (0.25 * open) * (0.25 * sum);
+}
+
+/// Share of the sun by one cascade's maps. The taps lie on a disk turned by an angle of its own for
+/// each texel of the map (Habel 2009, 5.5). The angle hangs on the world, not on the picture, so
+/// nothing swims when the camera moves. The point is moved off its surface, towards the sun's side,
+/// by the reach of the filter: in the normal's direction where the sun grazes it, towards the sun
+/// where it does not. A surface therefore never shades itself, and the shadow of another is displaced
+/// by less than three texels.
+vec3 cascadeVisibility(int cascade, vec3 world_position, vec3 geometric_normal, vec4 leaf,
+                       bool soft) {
   vec3 l = frame.to_sun.xyz;
-  float texel_m = frame.to_sun.w;
+  float texel_m = frame.cascade[cascade].x;
+  vec2 off_center = abs(cascadePosition(cascade, world_position).xy - 0.5);
+  float widening = min(frame.cascade[cascade].y, kWidestPoisson) - 1.0;
+  float radius =
+      kPoissonRadius * (1.0 + widening * smoothstep(0.2, 0.45, max(off_center.x, off_center.y)));
   float n_l = dot(geometric_normal, l);
   vec3 n = n_l < 0.0 ? -geometric_normal : geometric_normal;
   float grazing = sqrt(max(1.0 - n_l * n_l, 0.0));
-  vec3 p = world_position + n * ((kPoissonRadius + 0.7) * texel_m * grazing) + l * texel_m;
-  vec3 at = (frame.shadow_from_world * vec4(p, 1.0)).xyz;
-  at.z = min(at.z, 1.0);  // beyond the map: behind everything in it
-  if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return vec3(1.0);
-
-  float texel = frame.sun_light.w;
-  vec2 cell = floor(at.xy / texel);
+  ShadowLookup from;
+  from.cascade = cascade;
+  from.at = cascadePosition(cascade, world_position + n * ((radius + 0.7) * texel_m * grazing) +
+                                         l * texel_m);
+  from.z = from.at.z;
+  from.at.z = min(from.at.z, 1.0);
+  if (any(lessThan(from.at.xy, vec2(0.0))) || any(greaterThan(from.at.xy, vec2(1.0))))
+    return vec3(1.0);
+  vec2 cell = cascadeCell(cascade, from.at.xy);
   float angle = 6.28318531 * fract(52.9829189 * fract(dot(cell, vec2(0.06711056, 0.00583715))));
-  vec2 turn = vec2(cos(angle), sin(angle)) * (kPoissonRadius * texel);
-  const bool layered = kShadowSource != kShadowMap;
-  const int taps = layered ? 4 : 12;
-  float open = 0.0;
-  vec3 through = vec3(0.0);
-  for (int i = 0; i < taps; ++i) {
-    vec2 q = layered ? kSquare[i] : kPoissonDisk[i];
-    vec2 tap = at.xy + vec2(turn.x * q.x - turn.y * q.y, turn.y * q.x + turn.x * q.y);
-    open += textureLod(shadow_map, vec3(tap, at.z), 0.0);
-    if (layered) through += throughLeaves(vec3(tap, at.z), leaf);
-  }
-  open /= float(taps);
-  return layered ? open * through / float(taps) : vec3(open);
+  from.turn = vec2(cos(angle), sin(angle)) * (radius * frame.sun_light.w);
+  if (kShadowSource == kShadowMap) return vec3(shadowMapVisibility(from));
+  return layeredVisibility(from, leaf, soft);
+}
+
+/// `geometric_normal` is the triangle's own, on either side; `leaf`, as throughLeaves() has it;
+/// `soft`, as layeredVisibility() does.
+vec3 sunVisibility(vec3 world_position, vec3 geometric_normal, vec4 leaf, bool soft) {
+  CascadeChoice choice = chooseCascades(world_position);
+  vec3 visibility = cascadeVisibility(choice.fine, world_position, geometric_normal, leaf, soft);
+  if (choice.share < 1.0)
+    visibility = mix(cascadeVisibility(choice.coarse, world_position, geometric_normal, leaf, soft),
+                     visibility, choice.share);
+  return visibility;
 }

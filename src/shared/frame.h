@@ -1,6 +1,7 @@
 #ifndef VERDURE_SHARED_FRAME_H_
 #define VERDURE_SHARED_FRAME_H_
 
+#include "cascade.h"
 #include "portable.h"
 #include "sky_formula.h"
 
@@ -12,12 +13,13 @@ SHARED_BEGIN
 
 struct FrameUniforms {
   mat4 clip_from_world;
-  mat4 shadow_from_world;  ///< x, y in [0, 1] over the shadow map, z = its depth
-  vec4 eye;                ///< xyz; w = frame units of 1 kcd/m^2
-  vec4 to_sun;             ///< unit; w = size of a shadow map texel, m
-  vec4 sun_light;          ///< irradiance / pi of a surface facing the sun; w = 1 / size of the map
-  vec4 sun_disk;           ///< luminance; w = angular radius
-  vec4 open_sky;  ///< irradiance / pi of open ground by the sky; w = exponent of leaf visibility
+  mat4 shadow_from_world[kMostCascades];  ///< x, y in [0, 1] over each layer, z = its depth
+  vec4 cascade[kMostCascades];  ///< size of a texel, m; that of the next cascade / it; origin
+  vec4 eye;                     ///< xyz; w = frame units of 1 kcd/m^2
+  vec4 to_sun;                  ///< unit; w = number of cascades
+  vec4 sun_light;  ///< irradiance / pi of a surface facing the sun; w = 1 / size of the map
+  vec4 sun_disk;   ///< luminance; w = angular radius
+  vec4 open_sky;   ///< irradiance / pi of open ground by the sky; w = exponent of leaf visibility
   vec4
       ground;  ///< height, radius of the disc, half distance of the haze, size of a texture tile, m
   vec4 ground_map;  ///< corner x, z of the map of light on the ground, 1 / its size, m; 0 = none
@@ -25,12 +27,13 @@ struct FrameUniforms {
   vec4 ray_down;    ///< w = 2 / height, pixels
   vec4 ray_forward;
   vec4 open_light[9];  ///< shIrradiance() / pi by the open sky and the open ground
-  vec4 leaf_tint;  ///< leafTint() of the scene's foliage, mean; w = tangent of the disk's radius
-  SkyFormula sky;  ///< kcd/m^2, where the sky has one
+  vec4 leaf_tint;      ///< leafTint() of the scene's foliage, mean
+  SkyFormula sky;      ///< kcd/m^2, where the sky has one
 };
-SHARED_SIZE(FrameUniforms, 576);
+SHARED_SIZE(FrameUniforms, 832);
 
-/// Push constants of one draw.
+/// Push constants of one draw. Behind them, for the vertex stage of maps seen from the sun: uint
+/// cascade.
 struct DrawUniforms {
   vec4 color;  ///< linear RGB; w = alpha, both multiply the texture
   vec4 matt;   ///< colour without textures: the material's mean; w = optical thickness, 0 = unknown

@@ -2,8 +2,8 @@
 // run, and prints the medians of the GPU's frame times and their ratio. Usage:
 // render_bench [leaves = 10000] [frames = 31] [width = 1280] [height = 720] [A = standard]
 //   [B = expressive]
-// A and B are presets; PRESET:paper, PRESET:layers and PRESET:shadow-map are one with that source
-// of shadows.
+// A and B are presets; PRESET:paper, PRESET:layers, PRESET:ordered and PRESET:shadow-map are one
+// with that source of shadows.
 
 #include <algorithm>
 #include <cstdio>
@@ -37,11 +37,13 @@ verdure::Terms termsOf(const std::string& name) {
     terms.shadow_source = ShadowSource::kDepthPaper;
   else if (source == "layers")
     terms.shadow_source = ShadowSource::kDepthLayers;
+  else if (source == "ordered")
+    terms.shadow_source = ShadowSource::kDepthOrdered;
   else if (source == "shadow-map")
     terms.shadow_source = ShadowSource::kShadowMap;
   else
     throw verdure::Error("render_bench", "no shadows come from \"" + source + "\"",
-                         "use paper, layers or shadow-map");
+                         "use paper, layers, ordered or shadow-map");
   return terms;
 }
 

@@ -180,7 +180,7 @@ TEST_F(LightDepth, LeavesSeeTheLayersInFront) {
       const HdrImage image = renderer().render(view).hdr;
       for (int c = 0; c < 3; ++c) {
         const float lit = sunLight(view)[c] * k_t[c];
-        EXPECT_NEAR(image.at(32, 24)[c], lit * last[c], 0.02f * lit * (0.1f + last[c]))
+        EXPECT_NEAR(image.at(32, 24)[c], lit * last[c], 0.02f * lit * (0.2f + last[c]))
             << static_cast<int>(source) << ", " << layers << " layers, channel " << c;
       }
     }
@@ -224,22 +224,19 @@ TEST_F(LightDepth, HolesInLeavesLetAllLightThrough) {
   const HdrImage depth = renderer().render(view).hdr;
   view.terms.shadow_source = ShadowSource::kShadowMap;
   const HdrImage map = renderer().render(view).hdr;
-  // Where the plain map lets all light through, so does the new one; white leaves let none
-  // through, so that both are dark in the same places.
-  int lit = 0, dark = 0;
+  // White leaves let nothing through: both maps are lit and dark in the same places but for the
+  // width of the half-shadow.
+  int lit = 0, dark = 0, wrong = 0;
   for (int y = 4; y < 60; ++y)
     for (int x = 4; x < 60; ++x) {
       const float open = 0.18f * sunLight(view).g;
-      if (map.at(x, y).g > 0.999f * open) {
-        EXPECT_GT(depth.at(x, y).g, 0.9f * open);
-        ++lit;
-      } else if (map.at(x, y).g < 0.001f * open) {
-        EXPECT_LT(depth.at(x, y).g, 0.1f * open);
-        ++dark;
-      }
+      if (map.at(x, y).g > 0.999f * open && depth.at(x, y).g > 0.8f * open) ++lit;
+      if (map.at(x, y).g < 0.001f * open && depth.at(x, y).g < 0.2f * open) ++dark;
+      wrong += std::abs(map.at(x, y).g - depth.at(x, y).g) > 0.5f * open ? 1 : 0;
     }
   EXPECT_GT(lit, 300);
   EXPECT_GT(dark, 300);
+  EXPECT_LT(wrong, 10);
 }
 
 }  // namespace

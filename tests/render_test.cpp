@@ -22,6 +22,9 @@ TEST(Terms, PresetsAreThePublishedCombinations) {
   for (const std::string& name : presetNames()) EXPECT_NO_THROW(presetTerms(name));
   EXPECT_EQ(presetTerms("transfer").ambient_source, AmbientSource::kTransfer);
   EXPECT_TRUE(presetTerms("transfer").transmission);
+  EXPECT_EQ(presetTerms("depth-maps").ambient_source, AmbientSource::kLeafVisibility);
+  EXPECT_EQ(presetTerms("depth-maps").shadow_source, ShadowSource::kDepthLayers);
+  EXPECT_TRUE(presetTerms("depth-maps").scattering);
   EXPECT_THROW(presetTerms("impressive"), Error);
 }
 
@@ -50,6 +53,13 @@ TEST_F(Render, EveryTermIsSilentUnderValidation) {
       view.hdr = off % 2 == 0;
       view.bloom = off == 3 ? 0.0f : 0.05f;
       view.exposure.ev = off == 4 ? std::optional(14.0f) : std::nullopt;
+      renderer().render(view);
+    }
+  for (const ShadowSource source : {ShadowSource::kShadowMap, ShadowSource::kDepthPaper,
+                                    ShadowSource::kDepthLayers, ShadowSource::kDepthOrdered})
+    for (const int cascades : {1, 3}) {
+      view.terms.shadow_source = source;
+      view.shadow_cascades = cascades;
       renderer().render(view);
     }
   view.background = glm::vec3(0.2f);

@@ -30,12 +30,16 @@ enum class AmbientSource {
   kLeafVisibility,
 };
 
-/// How much of the sun reaches a surface behind others.
+/// How much of the sun reaches a surface behind others. The last three know wood by its nearest
+/// surface and leaves by their layers (light depth maps: Gumbau, Chover, Rebollo, Remolar,
+/// "Real-Time Illumination of Foliage Using Depth Maps", ICCS 2008): the ground and wood see
+/// alpha^C of the leaves in front of them, alpha what a leaf lets through, tinted as it is, and the
+/// ground's half-shadow is as wide as the sun's disk and the distance make it.
 enum class ShadowSource {
-  kShadowMap,    ///< all or nothing, by the depth of the nearest surface
-  kDepthPaper,   ///< leaves by (4) of Gumbau et al. 2008, all else as kDepthLayers
-  kDepthLayers,  ///< what the leaves in front let through, by depths and number of their layers
-  kDepthOrdered,
+  kShadowMap,     ///< all or nothing, by the nearest surface
+  kDepthPaper,    ///< leaves by the paper's (4)
+  kDepthLayers,   ///< leaves see the share of the layers in front of them, spread evenly
+  kDepthOrdered,  ///< ... of which the first and the last are where they are
 };
 
 /// The terms of illumination model (1) of Luft et al. 2007, each with its switch, and light through
@@ -57,8 +61,9 @@ struct Terms {
 };
 
 /// Published combinations: "standard" (leaf normals, constant ambient), "expressive" (Luft: crown
-/// normals, baked ambient) and "transfer" (Habel: leaf normals, transfer vectors, transmission; and
-/// gloss).
+/// normals, baked ambient), "transfer" (Habel: leaf normals, transfer vectors, transmission; and
+/// gloss) and "depth-maps" (Gumbau: leaf normals, leaf visibility, transmission, scattering, light
+/// depth maps).
 /// Throws Error for an unknown name.
 Terms presetTerms(const std::string& name);
 const std::vector<std::string>& presetNames();

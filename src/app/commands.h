@@ -102,6 +102,7 @@ struct RenderCommand : SceneOptions {
       false;  ///< parameters of the bake were given: the file's own light is not theirs
   std::string light = "expressive";
   std::string terms;
+  std::string shadows;  ///< empty: the light's own
   DaylightOptions daylight;
   ExposureOptions exposure;
   int bands = 5;

@@ -213,11 +213,15 @@ int run(int argc, char** argv) {
   addSceneOptions(*render_app, render);
   render_app->add_option("-o,--output", render.output, "File to write: .png, or .exr in kcd/m^2")
       ->required();
-  render_app->add_option("--light", render.light, "standard, expressive or transfer")
+  render_app->add_option("--light", render.light, "standard, expressive, transfer or depth-maps")
       ->capture_default_str();
   render_app->add_option("--terms", render.terms,
                          "Only these terms: ambient,diffuse,specular,shadow,textures,transmission,"
-                         "gloss");
+                         "scattering,gloss");
+  render_app->add_option(
+      "--shadows", render.shadows,
+      "Instead of the light's own: map, or depth maps of leaves: paper, layers or "
+      "ordered");
   addDaylightOptions(*render_app, render.daylight);
   addExposureOptions(*render_app, render.exposure);
   render_app

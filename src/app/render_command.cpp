@@ -16,11 +16,21 @@
 namespace verdure::app {
 namespace {
 
+ShadowSource shadowSource(const std::string& name) {
+  if (name == "map") return ShadowSource::kShadowMap;
+  if (name == "paper") return ShadowSource::kDepthPaper;
+  if (name == "layers") return ShadowSource::kDepthLayers;
+  if (name == "ordered") return ShadowSource::kDepthOrdered;
+  throw Error("--shadows", fmt::format("'{}' is unknown", name),
+              "use map, paper, layers or ordered");
+}
+
 Terms parseTerms(const RenderCommand& command) {
   Terms terms = presetTerms(command.light);
+  if (!command.shadows.empty()) terms.shadow_source = shadowSource(command.shadows);
   if (command.terms.empty()) return terms;
   terms.ambient = terms.diffuse = terms.specular = terms.shadow = terms.textures =
-      terms.transmission = terms.gloss = false;
+      terms.transmission = terms.scattering = terms.gloss = false;
   std::size_t begin = 0;
   while (begin <= command.terms.size()) {
     const std::size_t end = std::min(command.terms.find(',', begin), command.terms.size());
@@ -31,11 +41,13 @@ Terms parseTerms(const RenderCommand& command) {
                        : name == "shadow"       ? &terms.shadow
                        : name == "textures"     ? &terms.textures
                        : name == "transmission" ? &terms.transmission
+                       : name == "scattering"   ? &terms.scattering
                        : name == "gloss"        ? &terms.gloss
                                                 : nullptr;
     if (term == nullptr)
       throw Error("--terms", fmt::format("'{}' is unknown", name),
-                  "use ambient, diffuse, specular, shadow, textures, transmission, gloss");
+                  "use ambient, diffuse, specular, shadow, textures, transmission, scattering, "
+                  "gloss");
     *term = true;
     begin = end + 1;
   }

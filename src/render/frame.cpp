@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <glm/gtc/matrix_access.hpp>
 
 #include "render/look.h"
 #include "scene/camera.h"
@@ -86,6 +87,10 @@ FrameDrawer::FrameDrawer(const gpu::Device& device)
   using Beyond = vk::SamplerAddressMode;
   ground_sampler_ = gpu::makeSampler(device, vk::Filter::eLinear, Beyond::eRepeat);
   edge_sampler_ = gpu::makeSampler(device, vk::Filter::eLinear, Beyond::eClampToEdge);
+  foliage_sampler_ = device.raii().createSampler({.magFilter = vk::Filter::eLinear,
+                                                  .minFilter = vk::Filter::eLinear,
+                                                  .addressModeU = Beyond::eClampToEdge,
+                                                  .addressModeV = Beyond::eClampToEdge});
   texel_sampler_ = gpu::makeSampler(device, vk::Filter::eNearest, Beyond::eClampToEdge);
   sky_sampler_ = device.raii().createSampler({.magFilter = vk::Filter::eLinear,
                                               .minFilter = vk::Filter::eLinear,
@@ -196,7 +201,7 @@ std::vector<Cascade> FrameDrawer::cascadesOf(const GpuScene& scene, const View& 
                                     .height = foliage_size,
                                     .layers = layers,
                                     .usage = Usage::eColorAttachment | Usage::eSampled});
-    frame_set_.setTexture(6, *foliage_maps_, *edge_sampler_);
+    frame_set_.setTexture(6, *foliage_maps_, *foliage_sampler_);
   }
   return cascades;
 }
@@ -237,7 +242,8 @@ shared::FrameUniforms FrameDrawer::makeUniforms(const GpuScene& scene, const Vie
   const float haze = std::max(look::kHazeHalf * distance, look::kHazeHalfLeast_m);
   u.ground = glm::vec4(scene.groundHeight(), look::kGroundRadius * haze, haze, look::kGroundTile_m);
   u.ground_map = glm::vec4(ground_light_.place(), 0.0f);
-  u.leaf_tint = glm::vec4(scene.leafTint(), 0.0f);
+  u.leaf_tint = glm::vec4(scene.leafTint(),
+                          glm::length(glm::vec3(glm::row(cascades[0].shadow_from_world, 2))));
   if (view.daylight.sky != nullptr && view.daylight.sky->formula() != nullptr)
     u.sky = *view.daylight.sky->formula();
   return u;

@@ -67,6 +67,7 @@ class FrameDrawer {
   vk::raii::Sampler ground_sampler_ = nullptr;  ///< repeats both ways
   vk::raii::Sampler sky_sampler_ = nullptr;     ///< repeats around the horizon
   vk::raii::Sampler edge_sampler_ = nullptr;
+  vk::raii::Sampler foliage_sampler_ = nullptr;
   vk::raii::Sampler texel_sampler_ = nullptr;  ///< the nearest texel
   vk::raii::Sampler shadow_sampler_ = nullptr;
   gpu::Buffer uniforms_;

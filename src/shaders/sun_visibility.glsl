@@ -7,7 +7,7 @@ const vec2 kPoissonDisk[12] = vec2[](
     vec2(0.1854, 0.4768), vec2(-0.1024, -0.8681), vec2(0.7568, -0.4699), vec2(-0.6557, 0.0262),
     vec2(-0.0339, -0.1492), vec2(0.8430, 0.3558), vec2(-0.7196, -0.5347), vec2(-0.2571, 0.3055),
     vec2(0.4997, -0.0542), vec2(0.0117, 0.9999), vec2(0.2522, -0.5537), vec2(-0.7800, 0.4656));
-/// Four points of the same disk: with bilinear taps of maps as smooth as those of leaves they do.
+/// Four points of the same disk, for what is read beside the smoother map of leaves.
 const vec2 kSquare[4] = vec2[](vec2(0.7, 0.0), vec2(0.0, 0.7), vec2(-0.7, 0.0), vec2(0.0, -0.7));
 /// Radius of that disk in texels of a shadow map. With the bilinear comparison of each tap the
 /// half-shadow of an edge is about 4 texels wide: 2 cm for a 10 m tree and a map of 2048, the width
@@ -50,49 +50,44 @@ float shadowMapVisibility(ShadowLookup from) {
 
 /// Mean distance from the point to what is in front of it, m, 0 if nothing is: leaves, halfway
 /// between the first and the last one, and wood. It is looked for over all that may hide the sun.
-float blockerDistance(ShadowLookup from, float depth_per_m) {
-  float widest = min(from.z / depth_per_m * tan(frame.sun_disk.w) / frame.cascade[from.cascade].x,
-                     kWidestShadow);
-  ShadowLookup wide = from;
-  wide.turn = normalize(from.turn) * (max(widest, kPoissonRadius) * frame.sun_light.w);
+float blockerDistance(ShadowLookup from) {
+  float widest = min(from.z / frame.leaf_tint.w * tan(frame.sun_disk.w) /
+                         frame.cascade[from.cascade].x, kWidestShadow);
+  from.turn = normalize(from.turn) * (max(widest, kPoissonRadius) * frame.sun_light.w);
   vec2 sum = vec2(0.0);
-  for (int i = 0; i < 8; ++i) {
-    vec3 tap = vec3(tapOf(wide, kPoissonDisk[i]), float(from.cascade));
-    LeafLayers layers = leafLayers(textureLod(foliage_map, tap, 0.0));
+  for (int i = 0; i < 5; ++i) {
+    vec2 tap = i < 4 ? tapOf(from, kSquare[i]) : from.at.xy;
+    LeafLayers layers = leafLayers(foliageTap(from.cascade, tap));
     sum += layers.covered * vec2(from.z - 0.5 * (layers.near + layers.far), 1.0);
-    float wood = textureLod(shadow_depth, tap, 0.0).r;
+    float wood = texture(shadow_depth, vec3(tap, float(from.cascade))).r;
     if (wood < from.at.z) sum += vec2(from.z - wood, 1.0);
   }
-  return sum.y > 0.0 ? max(sum.x, 0.0) / (sum.y * depth_per_m) : 0.0;
+  return sum.y > 0.0 ? max(sum.x, 0.0) / (sum.y * frame.leaf_tint.w) : 0.0;
 }
 
-/// What wood leaves open and leaves let through. `soft`: with the half-shadow of the sun's disk, as
-/// wide as what casts it is far away (after Fernando, "Percentage-Closer Soft Shadows", 2005, where
-/// the distance is known from the depth maps anyway); for surfaces that cast no shadow themselves.
+/// What wood leaves open and leaves let through. The texels of leaves are filtered first, as their
+/// optical depths may be, and evaluated once. Each of them costs as much as several of wood's, so
+/// leaves themselves read one, as the paper has it. `soft`: with the half-shadow of the sun's disk,
+/// as wide as what casts it is far away (after Fernando, "Percentage-Closer Soft Shadows", 2005):
+/// for surfaces that cast no shadow themselves.
 vec3 layeredVisibility(ShadowLookup from, vec4 leaf, bool soft) {
-  float depth_per_m = depthPerMetre(from.cascade);
-  if (soft) {
-    float distance = blockerDistance(from, depth_per_m);
-    if (distance <= 0.0) return vec3(1.0);
-    float radius = distance * tan(frame.sun_disk.w) / frame.cascade[from.cascade].x;
-    float texels = length(from.turn) / frame.sun_light.w;
-    from.turn *= clamp(radius, texels, max(texels, kWidestShadow)) / texels;
-  }
-  vec3 sum = vec3(0.0);
-  if (soft) {
-    for (int i = 0; i < 12; ++i) {
-      vec2 tap = tapOf(from, kPoissonDisk[i]);
-      sum += openTap(from, tap) * throughLeaves(from.cascade, tap, from.z, depth_per_m, leaf);
-    }
-    return sum / 12.0;
-  }
   float open = 0.0;
-  for (int i = 0; i < 4; ++i) {
-    vec2 tap = tapOf(from, kSquare[i]);
-    open += openTap(from, tap);
-    sum += throughLeaves(from.cascade, tap, from.z, depth_per_m, leaf);
+  if (!soft) {
+    for (int i = 0; i < 4; ++i) open += openTap(from, tapOf(from, kSquare[i])) / 4.0;
+    return open * throughLeaves(from.cascade, foliageTap(from.cascade, from.at.xy), from.z, leaf);
   }
-  return (0.25 * open) * (0.25 * sum);
+  float distance = blockerDistance(from);
+  if (distance <= 0.0) return vec3(1.0);
+  float radius = distance * tan(frame.sun_disk.w) / frame.cascade[from.cascade].x;
+  float texels = length(from.turn) / frame.sun_light.w;
+  from.turn *= clamp(radius, texels, max(texels, kWidestShadow)) / texels;
+  vec4 leaves = vec4(0.0);
+  for (int i = 0; i < 12; ++i) {
+    vec2 tap = tapOf(from, kPoissonDisk[i]);
+    open += openTap(from, tap) / 12.0;
+    leaves += foliageTap(from.cascade, tap) / 12.0;
+  }
+  return open * throughLeaves(from.cascade, leaves, from.z, leaf);
 }
 
 /// Share of the sun by one cascade's maps. The taps lie on a disk turned by an angle of its own for

@@ -13,18 +13,42 @@
 /// What the parts of `report fidelity` share.
 namespace verdure::app {
 
+enum class CrownBake { kMetaball, kOpticalDepth, kLeafVisibility };
+
 /// A way to light a plant: the terms and, where they use one, the bake of the crown.
 struct Candidate {
   const char* name;
   Terms terms;
-  bool optical_depth;  ///< the crown's light comes from it, else from the metaball field
-  bool on_ground;      ///< lights the ground in a way of its own: measured there
+  CrownBake bake;
+  bool on_ground;  ///< lights the ground in a way of its own: measured there
 };
-inline const std::array<Candidate, 4> kCandidates{{
-    {"standard", presetTerms("standard"), false, true},
-    {"expressive", presetTerms("expressive"), false, true},
-    {"expressive, optical depth", presetTerms("expressive"), true, false},
-    {"transfer", presetTerms("transfer"), true, true},
+
+inline Terms presetWith(const char* preset, ShadowSource source) {
+  Terms terms = presetTerms(preset);
+  terms.shadow_source = source;
+  return terms;
+}
+
+/// What `best` is without transfer vectors.
+inline Terms bakedOrdered() {
+  Terms terms = presetWith("transfer", ShadowSource::kDepthOrdered);
+  terms.ambient_source = AmbientSource::kBaked;
+  return terms;
+}
+
+inline const std::array<Candidate, 9> kCandidates{{
+    {"standard", presetTerms("standard"), CrownBake::kMetaball, true},
+    {"expressive", presetTerms("expressive"), CrownBake::kMetaball, false},
+    {"expressive, optical depth", presetTerms("expressive"), CrownBake::kOpticalDepth, false},
+    {"depth-maps, paper", presetWith("depth-maps", ShadowSource::kDepthPaper),
+     CrownBake::kLeafVisibility, false},
+    {"depth-maps, layers", presetTerms("depth-maps"), CrownBake::kLeafVisibility, true},
+    {"depth-maps, ordered", presetWith("depth-maps", ShadowSource::kDepthOrdered),
+     CrownBake::kLeafVisibility, true},
+    {"baked, ordered", bakedOrdered(), CrownBake::kOpticalDepth, false},
+    {"transfer", presetTerms("transfer"), CrownBake::kOpticalDepth, true},
+    {"transfer, ordered", presetWith("transfer", ShadowSource::kDepthOrdered),
+     CrownBake::kOpticalDepth, true},
 }};
 
 struct SunPosition {
@@ -48,10 +72,13 @@ struct Subject {
   Plant plant;
   DensityBake metaball;
   DepthBake depth;
+  CrownLight visible;  ///< depth.light with the leaves' visibility
   PlantTransfer transfer;
   Scene scene(const Candidate& candidate) const {
     Scene scene;
-    scene.items.push_back({&plant, candidate.optical_depth ? &depth.light : &metaball.light});
+    scene.items.push_back({&plant, candidate.bake == CrownBake::kMetaball       ? &metaball.light
+                                   : candidate.bake == CrownBake::kOpticalDepth ? &depth.light
+                                                                                : &visible});
     scene.items[0].transfer = &transfer;
     return scene;
   }

@@ -16,6 +16,7 @@
 #include "verdure/compare.h"
 #include "verdure/error.h"
 #include "verdure/grow.h"
+#include "verdure/leaf_visibility.h"
 #include "verdure/occlusion.h"
 #include "verdure/optical_depth.h"
 #include "verdure/reference.h"
@@ -44,9 +45,11 @@ Subject makeSubject(const std::string& species, const FidelityCommand& command) 
   options.species = species;
   options.leaf_form = LeafForm::kCard;
   options.texture_size = 256;
-  Subject subject{species, grow(options), {}, {}, {}};
+  Subject subject{species, grow(options), {}, {}, {}, {}};
   subject.metaball = bakeDensity(subject.plant);
   subject.depth = bakeOpticalDepth(subject.plant);
+  subject.visible = subject.depth.light;
+  setLeafVisibility(subject.plant, leafVisibility(subject.plant), subject.visible);
   TransferOptions transfer;
   transfer.rays.rays = command.transfer_rays;
   transfer.rays.ground_height = 0.0f;

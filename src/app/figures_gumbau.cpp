@@ -101,7 +101,7 @@ void daylight(FigureSet& figures, bool sky_alone = false) {
   figures.view().daylight = parseDaylight({});
   figures.view().background.reset();
   figures.view().exposure.ev.reset();
-  if (sky_alone) figures.view().exposure.ev = 12.5f;
+  if (sky_alone) figures.view().exposure.ev = 13.0f;
 }
 
 void drawTerms(FigureSet& figures, const Scene& scene) {
@@ -153,12 +153,10 @@ void drawShadows(FigureSet& figures, const Plant& plant) {
   page.endRow();
 
   page.paragraph(
-      "Leaves near by, lit from the side. A leaf of the light depth maps gets what the layers in "
-      "front of it let through.");
-  // Where the crown's ellipsoid meets a direction between the sun and the side.
-  const glm::vec3 out = glm::normalize(to_sun + 1.2f * aside);
-  const glm::vec3 at = crown.center() + 0.42f * crown.size() * out;
-  view.camera = {at + 0.35f * size * out, at, 0.35f};
+      "Leaves near by, the sun on the right. Behind a light depth map a leaf gets what the layers "
+      "in front of it let through.");
+  const glm::vec3 at = crown.center() + 0.3f * crown.size() * aside;
+  view.camera = {at + 0.55f * size * aside, at, 0.55f};
   const std::tuple<const char*, ShadowSource, const char*> sources[] = {
       {"map", ShadowSource::kShadowMap, "plain shadow map"},
       {"paper", ShadowSource::kDepthPaper, "the paper's (4)"},
@@ -177,7 +175,7 @@ void drawShadows(FigureSet& figures, const Plant& plant) {
 /// Trees of all kinds, scattered evenly around an open middle.
 Scene plantForest(const std::vector<LitPlant>& kinds) {
   constexpr int kTrees = 30;
-  constexpr float kHalfWidth = 45.0f, kLeastDistance = 9.0f, kClearing = 8.0f;  // m
+  constexpr float kHalfWidth = 32.0f, kLeastDistance = 7.0f, kClearing = 8.0f;  // m
   Random random(2008);
   Scene scene;
   for (const LitPlant& kind : kinds) scene.items.push_back({&kind.plant, &kind.light, {}});
@@ -207,12 +205,12 @@ void drawForest(FigureSet& figures, const Scene& forest) {
   for (const SceneItem& item : forest.items) trees += item.world_from_plant.size();
   page.heading("Figure 5: a forest");
   page.paragraph(fmt::format(
-      "{} trees of {} kinds, turned and scaled, on 90 m x 90 m; the sun's maps are split into "
+      "{} trees of {} kinds, turned and scaled, on 64 m x 64 m; the sun's maps are split into "
       "cascades.",
       trees, forest.items.size()));
   const std::pair<const char*, Camera> eyes[] = {
-      {"walk", {{2.0f, 1.7f, 26.0f}, {0.0f, 5.0f, 0.0f}, 1.0f}},
-      {"above", {{38.0f, 30.0f, 62.0f}, {0.0f, 2.0f, 0.0f}, 0.8f}}};
+      {"walk", {{3.0f, 1.7f, 16.0f}, {0.0f, 5.0f, -8.0f}, 1.0f}},
+      {"above", {{30.0f, 24.0f, 50.0f}, {0.0f, 3.0f, 0.0f}, 0.75f}}};
   for (const auto& [name, camera] : eyes) {
     figures.view().camera = camera;
     page.beginRow();

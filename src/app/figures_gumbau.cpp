@@ -153,10 +153,11 @@ void drawShadows(FigureSet& figures, const Plant& plant) {
   page.endRow();
 
   page.paragraph(
-      "Leaves near by, the sun on the right. Behind a light depth map a leaf gets what the layers "
-      "in front of it let through.");
+      "Leaves near by, the sun on the left. Behind a light depth map a leaf gets what the layers "
+      "in front of it let through, which is little: the pictures differ in the half-shade inside "
+      "the crown.");
   const glm::vec3 at = crown.center() + 0.3f * crown.size() * aside;
-  view.camera = {at + 0.55f * size * aside, at, 0.55f};
+  view.camera = {at + 0.5f * size * aside, at, 0.35f};
   const std::tuple<const char*, ShadowSource, const char*> sources[] = {
       {"map", ShadowSource::kShadowMap, "plain shadow map"},
       {"paper", ShadowSource::kDepthPaper, "the paper's (4)"},
@@ -172,17 +173,17 @@ void drawShadows(FigureSet& figures, const Plant& plant) {
   view.shadow_cascades = 0;
 }
 
-/// Trees of all kinds, scattered evenly around an open middle.
+/// Trees of all kinds, scattered evenly.
 Scene plantForest(const std::vector<LitPlant>& kinds) {
-  constexpr int kTrees = 30;
-  constexpr float kHalfWidth = 32.0f, kLeastDistance = 7.0f, kClearing = 8.0f;  // m
+  constexpr int kTrees = 36;
+  constexpr float kHalfWidth = 30.0f, kLeastDistance = 7.0f;  // m
   Random random(2008);
   Scene scene;
   for (const LitPlant& kind : kinds) scene.items.push_back({&kind.plant, &kind.light, {}});
   std::vector<glm::vec2> places;
   while (places.size() < kTrees) {
     const glm::vec2 place(random.vary(kHalfWidth), random.vary(kHalfWidth));
-    bool free = glm::length(place) > kClearing;
+    bool free = true;
     for (const glm::vec2& other : places)
       free = free && glm::distance(place, other) > kLeastDistance;
     if (!free) continue;
@@ -205,12 +206,12 @@ void drawForest(FigureSet& figures, const Scene& forest) {
   for (const SceneItem& item : forest.items) trees += item.world_from_plant.size();
   page.heading("Figure 5: a forest");
   page.paragraph(fmt::format(
-      "{} trees of {} kinds, turned and scaled, on 64 m x 64 m; the sun's maps are split into "
+      "{} trees of {} kinds, turned and scaled, on 60 m x 60 m; the sun's maps are split into "
       "cascades.",
       trees, forest.items.size()));
   const std::pair<const char*, Camera> eyes[] = {
-      {"walk", {{3.0f, 1.7f, 16.0f}, {0.0f, 5.0f, -8.0f}, 1.0f}},
-      {"above", {{30.0f, 24.0f, 50.0f}, {0.0f, 3.0f, 0.0f}, 0.75f}}};
+      {"walk", {{8.0f, 1.7f, 40.0f}, {0.0f, 7.0f, 0.0f}, 0.8f}},
+      {"above", {{26.0f, 20.0f, 48.0f}, {0.0f, 3.5f, 0.0f}, 0.75f}}};
   for (const auto& [name, camera] : eyes) {
     figures.view().camera = camera;
     page.beginRow();

@@ -19,7 +19,9 @@ struct LitPlant {
   CrownLight light;
 };
 
-LitPlant growLit(const std::string& species, std::uint32_t seed, LeafForm form, int texture_size) {
+/// `looks`: at each leaf, to find its visibility.
+LitPlant growLit(const std::string& species, std::uint32_t seed, LeafForm form, int texture_size,
+                 int looks) {
   GrowOptions options;
   options.species = species;
   options.seed = seed;
@@ -27,7 +29,9 @@ LitPlant growLit(const std::string& species, std::uint32_t seed, LeafForm form, 
   options.texture_size = texture_size;
   LitPlant lit{grow(options), {}};
   lit.light = bakeOpticalDepth(lit.plant).light;
-  setLeafVisibility(lit.plant, leafVisibility(lit.plant), lit.light);
+  LeafVisibilityOptions rays;
+  rays.directions = rays.rays = looks;
+  setLeafVisibility(lit.plant, leafVisibility(lit.plant, rays), lit.light);
   return lit;
 }
 
@@ -136,12 +140,13 @@ void drawShadows(FigureSet& figures, const Plant& plant) {
   const float size = glm::length(crown.size());
   View& view = figures.view();
   view.shadow_cascades = 1;
+  view.exposure.ev = 15.0f;
 
   Page& page = figures.page();
   page.heading("Figure 4: the shadow of the foliage");
   page.paragraph(fmt::format(
-      "The same camera and one map of {0} x {0} texels over the whole scene for each. In the "
-      "paper's figure the shadow is darker where more leaves lie behind each other.",
+      "The same camera, exposure and one map of {0} x {0} texels over the whole scene for each. "
+      "In the paper's figure the shadow is darker where more leaves lie behind each other.",
       view.shadow_map_size));
   view.camera = {shadow + 0.75f * size * aside + glm::vec3(0.0f, 0.45f * size, 0.0f), shadow, 0.6f};
   page.beginRow();
@@ -171,6 +176,7 @@ void drawShadows(FigureSet& figures, const Plant& plant) {
     if (i % 2 == 1) page.endRow();
   }
   view.shadow_cascades = 0;
+  view.exposure.ev.reset();
 }
 
 /// Trees of all kinds, scattered evenly.
@@ -235,7 +241,7 @@ void runGumbauFigures(const FiguresCommand& command) {
   Progress progress("figures gumbau");
   progress.show("growing");
   {
-    const LitPlant tree = growLit(command.species, 4, LeafForm::kMesh, 512);
+    const LitPlant tree = growLit(command.species, 4, LeafForm::kMesh, 512, 64);
     Scene scene;
     scene.items.push_back({&tree.plant, &tree.light});
     progress.show("figures 1 and 2");
@@ -249,9 +255,9 @@ void runGumbauFigures(const FiguresCommand& command) {
   }
   progress.show("growing a forest");
   std::vector<LitPlant> kinds;
-  kinds.push_back(growLit(command.species, 4, LeafForm::kCard, 256));
-  kinds.push_back(growLit("silver-birch", 2, LeafForm::kCard, 256));
-  kinds.push_back(growLit("quaking-aspen", 2, LeafForm::kCard, 256));
+  kinds.push_back(growLit(command.species, 4, LeafForm::kCard, 256, 24));
+  kinds.push_back(growLit("silver-birch", 2, LeafForm::kCard, 256, 24));
+  kinds.push_back(growLit("quaking-aspen", 2, LeafForm::kCard, 256, 24));
   progress.show("figure 5");
   drawForest(figures, plantForest(kinds));
   figures.page().write();

@@ -161,6 +161,7 @@ void drawShadows(FigureSet& figures, const Plant& plant) {
       "Leaves near by, the sun on the left. Behind a light depth map a leaf gets what the layers "
       "in front of it let through, which is little: the pictures differ in the half-shade inside "
       "the crown.");
+  view.exposure.ev = 14.2f;
   const glm::vec3 at = crown.center() + 0.3f * crown.size() * aside;
   view.camera = {at + 0.5f * size * aside, at, 0.35f};
   const std::tuple<const char*, ShadowSource, const char*> sources[] = {
@@ -181,8 +182,8 @@ void drawShadows(FigureSet& figures, const Plant& plant) {
 
 /// Trees of all kinds, scattered evenly.
 Scene plantForest(const std::vector<LitPlant>& kinds) {
-  constexpr int kTrees = 36;
-  constexpr float kHalfWidth = 30.0f, kLeastDistance = 7.0f;  // m
+  constexpr int kTrees = 28;
+  constexpr float kHalfWidth = 27.0f, kLeastDistance = 7.0f;  // m
   Random random(2008);
   Scene scene;
   for (const LitPlant& kind : kinds) scene.items.push_back({&kind.plant, &kind.light, {}});
@@ -212,7 +213,7 @@ void drawForest(FigureSet& figures, const Scene& forest) {
   for (const SceneItem& item : forest.items) trees += item.world_from_plant.size();
   page.heading("Figure 5: a forest");
   page.paragraph(fmt::format(
-      "{} trees of {} kinds, turned and scaled, on 60 m x 60 m; the sun's maps are split into "
+      "{} trees of {} kinds, turned and scaled, on 54 m x 54 m; the sun's maps are split into "
       "cascades.",
       trees, forest.items.size()));
   const std::pair<const char*, Camera> eyes[] = {

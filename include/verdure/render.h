@@ -39,7 +39,9 @@ enum class ShadowSource {
   kShadowMap,     ///< all or nothing, by the nearest surface
   kDepthPaper,    ///< leaves by the paper's (4)
   kDepthLayers,   ///< leaves see the share of the layers in front of them, spread evenly
-  kDepthOrdered,  ///< ... of which the first and the last are where they are
+  /// ... of which the first and the last are where they are. Where transfer vectors, which know the
+  /// light through leaves, light a surface, nothing but the sun itself passes.
+  kDepthOrdered,
 };
 
 /// The terms of illumination model (1) of Luft et al. 2007, each with its switch, and light through

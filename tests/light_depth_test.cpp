@@ -40,13 +40,13 @@ TEST(FoliageShadow, FiltersByWhatIsCovered) {
     EXPECT_NEAR(layers.near, 0.2f, 1e-6f);
     EXPECT_NEAR(layers.far, 0.8f, 1e-6f);
     EXPECT_NEAR(shared::spreadDepth(layers, 0.5f), 1.5f, 1e-5f);
-    const glm::vec3 through = shared::throughLayers(layers, 1.5f, {1.0f, 0.5f, 2.0f});
+    const glm::vec3 through = shared::throughLayers(layers, 1.5f, {1.0f, 0.5f, 2.0f}, 1.0f);
     EXPECT_NEAR(through.x, 1.0f - covered + covered * std::exp(-1.5f), 1e-6f);
     EXPECT_NEAR(through.y, 1.0f - covered + covered * std::exp(-0.75f), 1e-6f);
     EXPECT_NEAR(through.z, 1.0f - covered + covered * std::exp(-3.0f), 1e-6f);
   }
   const shared::LeafLayers empty = shared::leafLayers(glm::vec4(0.0f));
-  EXPECT_EQ(shared::throughLayers(empty, shared::spreadDepth(empty, 0.5f), glm::vec3(1.0f)),
+  EXPECT_EQ(shared::throughLayers(empty, shared::spreadDepth(empty, 0.5f), glm::vec3(1.0f), 1.0f),
             glm::vec3(1.0f));
   EXPECT_EQ(shared::paperShadow(empty, 0.5f, 2.0f), 1.0f);
 }
@@ -146,7 +146,8 @@ TEST_F(LightDepth, TheGroundSeesEveryLayer) {
       view.camera = {{0, 0.9f, 0.001f}, {0, 0, 0}, 0.3f};  // below the lowest card
       glm::vec3 through(1.0f);
       for (int i = 0; i < layers; ++i) through *= shared::leafTransmittance(kGreen);
-      // alpha^C, and half floats: 11 bits of an optical depth of up to 10.
+      if (source == ShadowSource::kDepthOrdered && layers > 0) through *= shared::shareBelowCrown();
+      // Half floats: 11 bits of an optical depth of up to 10.
       expectPixel(renderer().render(view).hdr, 32, 24, 0.18f * sunLight(view) * through, 0.01f);
     }
 }
@@ -203,7 +204,8 @@ TEST_F(LightDepth, WoodInsideSeesTheLayersInFrontOfItAndHidesLeaves) {
     View view = zenithView(source);
     // Between the upper cards and the slab; the leaf behind the slab does not count.
     view.camera = {{0, 2.7f, 0.001f}, {0, 2, 0}, 0.1f};
-    expectPixel(renderer().render(view).hdr, 32, 24, sunLight(view) * k_t * k_t, 0.01f);
+    const float share = source == ShadowSource::kDepthOrdered ? shared::shareBelowCrown() : 1.0f;
+    expectPixel(renderer().render(view).hdr, 32, 24, sunLight(view) * k_t * k_t * share, 0.01f);
     // The leaf under the slab is in its shadow, seen from either side.
     view.terms.transmission = true;
     for (const float eye : {1.9f, -2.0f}) {

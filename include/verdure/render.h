@@ -36,11 +36,12 @@ enum class AmbientSource {
 /// alpha^C of the leaves in front of them, alpha what a leaf lets through, tinted as it is, and the
 /// ground's half-shadow is as wide as the sun's disk and the distance make it.
 enum class ShadowSource {
-  kShadowMap,     ///< all or nothing, by the nearest surface
-  kDepthPaper,    ///< leaves by the paper's (4)
-  kDepthLayers,   ///< leaves see the share of the layers in front of them, spread evenly
-  /// ... of which the first and the last are where they are. Where transfer vectors, which know the
-  /// light through leaves, light a surface, nothing but the sun itself passes.
+  kShadowMap,    ///< all or nothing, by the nearest surface
+  kDepthPaper,   ///< leaves by the paper's (4)
+  kDepthLayers,  ///< leaves see the share of the layers in front of them, spread evenly
+  /// ... of which the first and the last are where they are. Below the crown arrives the share of
+  /// the light through leaves that a tree alone casts there (shared::shareBelowCrown()). Where
+  /// transfer vectors, which know all light through leaves, light a surface, the sun alone passes.
   kDepthOrdered,
 };
 

@@ -66,7 +66,8 @@ struct Terms {
 /// Published combinations: "standard" (leaf normals, constant ambient), "expressive" (Luft: crown
 /// normals, baked ambient), "transfer" (Habel: leaf normals, transfer vectors, transmission; and
 /// gloss) and "depth-maps" (Gumbau: leaf normals, leaf visibility, transmission, scattering, light
-/// depth maps).
+/// depth maps). "best" is what comes closest to the path tracer (docs/fidelity.md): transfer with
+/// kDepthOrdered.
 /// Throws Error for an unknown name.
 Terms presetTerms(const std::string& name);
 const std::vector<std::string>& presetNames();

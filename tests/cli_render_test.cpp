@@ -262,6 +262,8 @@ TEST_F(CommandLineRender, Refuses) {
   expectRefused({"figures", "luft", "--size", "0x5", "-o", path("figures")}, {"--size"});
   expectRefused({"figures", "luft", "--species", "triffid", "-o", path("figures")}, {"triffid"});
   expectRefused({"figures", "luft", "-o", tree}, {"the folder cannot be made", "-o"});
+  expectRefused({"figures", "gumbau", "--size", "0x5", "-o", path("figures")}, {"--size"});
+  expectRefused({"figures", "gumbau", "--species", "triffid", "-o", path("figures")}, {"triffid"});
 }
 
 TEST_F(CommandLineRender, FiguresOfTheSky) {
@@ -277,6 +279,47 @@ TEST_F(CommandLineRender, FiguresOfTheSky) {
       EXPECT_GT(difference(pictures[i], pictures.back()), 1.0) << name << ", " << i;
   }
   EXPECT_NE(page.find("figure53a.png"), std::string::npos);
+}
+
+TEST_F(CommandLineRender, FiguresOfLightDepthMaps) {
+  runWell(
+      {"figures", "gumbau", "--species", "scots-pine", "--size", "64x48", "-o", path("gumbau")});
+  const std::string page = textOf(path("gumbau/index.html"));
+  std::map<std::string, Image> pictures;
+  const std::string opening = "<img src='";
+  for (std::size_t at = page.find(opening); at != std::string::npos; at = page.find(opening, at)) {
+    at += opening.size();
+    const std::string name = page.substr(at, page.find('\'', at) - at);
+    EXPECT_TRUE(pictures.try_emplace(name, readImage(path("gumbau/" + name))).second) << name;
+    EXPECT_EQ(pictures.at(name).width, 64) << name;
+    EXPECT_EQ(pictures.at(name).height, 48) << name;
+  }
+  EXPECT_EQ(listing().size(), pictures.size() + 2);  // the folder and its page
+  const auto shown = [&pictures](const std::string& name) -> const Image& {
+    EXPECT_TRUE(pictures.contains(name + ".png")) << name;
+    return pictures[name + ".png"];
+  };
+  for (const auto& [a, b] :
+       {std::pair{"figure1a", "figure1b"}, std::pair{"figure3a", "figure3b"},
+        std::pair{"figure3c", "figure3d"}, std::pair{"figure4a", "figure4b"},
+        std::pair{"figure4-map", "figure4-paper"}, std::pair{"figure4-paper", "figure4-layers"},
+        std::pair{"figure4-layers", "figure4-ordered"},
+        std::pair{"figure5-walk-standard", "figure5-walk"},
+        std::pair{"figure5-above-standard", "figure5-above"}})
+    EXPECT_GT(difference(shown(a), shown(b)), 0.2) << a << ", " << b;
+  // Surroundings without as much green and blue leave less of them, and red as it is.
+  const Image &white = shown("figure2-white"), &red = shown("figure2-reddish"),
+              &yellow = shown("figure2-yellow");
+  EXPECT_LT(mean(red, 1), mean(yellow, 1));
+  EXPECT_LT(mean(yellow, 1), mean(white, 1));
+  EXPECT_LT(mean(yellow, 2), mean(red, 2));
+  EXPECT_LT(mean(red, 2), mean(white, 2));
+  // Leaves darken with the exponent.
+  EXPECT_LT(mean(shown("figure2-n2"), 1), mean(shown("figure2-n1"), 1));
+  EXPECT_LT(mean(shown("figure2-n1"), 1), mean(shown("figure2-n0.5"), 1));
+  EXPECT_EQ(difference(shown("figure2-n1"), white), 0.0);
+  // Light through leaves makes the shadow on the ground brighter.
+  EXPECT_GT(mean(shown("figure4b"), 1), mean(shown("figure4a"), 1));
 }
 
 TEST_F(CommandLineRender, SaysWhatToInstallWithoutVulkan) {

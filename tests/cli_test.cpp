@@ -28,9 +28,10 @@ TEST_F(CommandLine, HelpNamesEveryOptionAndDefault) {
     EXPECT_TRUE(std::regex_search(guide, whole)) << at->str(1) << " is not in the guide";
   }
   EXPECT_GT(options, 40u);
-  for (const Words& command : {Words{"--help"}, Words{"grow", "--help"}, Words{"inspect", "--help"},
-                               Words{"bake", "--help"}, Words{"render", "--help"},
-                               Words{"figures", "--help"}, Words{"figures", "luft", "--help"}})
+  for (const Words& command :
+       {Words{"--help"}, Words{"grow", "--help"}, Words{"inspect", "--help"},
+        Words{"bake", "--help"}, Words{"render", "--help"}, Words{"figures", "--help"},
+        Words{"figures", "luft", "--help"}, Words{"figures", "gumbau", "--help"}})
     EXPECT_NE(runWell(command).find("Usage: "), std::string::npos) << command[0];
   const std::string bake = runWell({"bake", "-h"});
   for (const char* text : {"--grid INT=128", "--k-min FLOAT=0.2", "--field TEXT",
@@ -351,7 +352,7 @@ TEST_F(CommandLine, RefusesWordsItDoesNotKnow) {
   expectRefused({"inspect", "a.glb", "--frobnicate"}, {"--frobnicate", "verdure inspect --help"});
   expectRefused({"inspect"}, {"file is required"});
   expectRefused({"bake", "a.glb"}, {"--output is required"});
-  expectRefused({"figures"}, {"no paper is named; use luft"});
+  expectRefused({"figures"}, {"no paper is named; use luft, gumbau or sky"});
   expectRefused({"--threads", "-1", "inspect", "a.glb"}, {"--threads"});
 }
 

@@ -177,6 +177,7 @@ struct FiguresCommand {
   DeviceOptions device;
 };
 void runLuftFigures(const FiguresCommand& command);
+void runGumbauFigures(const FiguresCommand& command);
 
 struct FidelityCommand {
   std::string output = "fidelity";

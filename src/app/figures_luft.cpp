@@ -4,16 +4,13 @@
 #include <cmath>
 #include <filesystem>
 
-#include "app/commands.h"
-#include "app/page.h"
+#include "app/figure_set.h"
 #include "base/progress.h"
 #include "shared/density.h"
 #include "verdure/error.h"
 
 namespace verdure::app {
 namespace {
-
-constexpr float kDegree = static_cast<float>(M_PI / 180.0);
 
 /// A plant with its light.
 struct LitPlant {
@@ -29,42 +26,6 @@ LitPlant growLit(const std::string& species, std::uint32_t seed) {
   lit.bake = bakeDensity(lit.plant);
   return lit;
 }
-
-View viewOf(const FiguresCommand& command) {
-  View view;
-  std::tie(view.width, view.height) = parseSize(command.size);
-  view.daylight = parseDaylight({});
-  return view;
-}
-
-/// The page, and what draws its pictures.
-class FigureSet {
- public:
-  explicit FigureSet(const FiguresCommand& command)
-      : view_(viewOf(command)),
-        renderer_(command.device),
-        page_(command.output, "Expressive illumination of foliage based on implicit surfaces",
-              "Figures 1 to 6 of Luft, Balzer and Deussen (2007), from verdure's plants on " +
-                  renderer_.deviceName() + ".") {}
-
-  Renderer& renderer() { return renderer_; }
-  Page& page() { return page_; }
-  /// All of the scene, from a direction in degrees.
-  void show(const Scene& scene, float azimuth_deg) {
-    const float aspect = static_cast<float>(view_.width) / static_cast<float>(view_.height);
-    view_.camera = automaticCamera(scene, azimuth_deg * kDegree, 4.0f * kDegree, aspect);
-    renderer_.setScene(scene);
-  }
-  void draw(const std::string& name, const Terms& terms, const std::string& caption) {
-    view_.terms = terms;
-    page_.picture(name, renderer_.render(view_).image, caption);
-  }
-
- private:
-  View view_;
-  Renderer renderer_;
-  Page page_;  ///< last: what is refused leaves no folder behind
-};
 
 /// Fig. 2: the implicit surface of two generators of the plane.
 std::string implicitSurfaceSvg() {
@@ -240,7 +201,8 @@ void drawTerms(FigureSet& figures) {
 
 void runLuftFigures(const FiguresCommand& command) {
   speciesParameters(command.species);  // throws if there is no such species
-  FigureSet figures(command);
+  FigureSet figures(command, "Expressive illumination of foliage based on implicit surfaces",
+                    "Figures 1 to 6 of Luft, Balzer and Deussen (2007), from verdure's plants on ");
   Progress progress("figures luft");
   progress.show("figure 1");
   drawGroup(figures);

@@ -308,14 +308,21 @@ int run(int argc, char** argv) {
   sky_app->add_option("--report", sky.report, "Folder for the fit's errors and pictures");
   sky_app->add_flag("--json", sky.json, "Print JSON, with the harmonics' weights");
 
-  FiguresCommand figures;
+  FiguresCommand luft, gumbau;
   CLI::App* figures_app = app.add_subcommand("figures", "Reproduce the figures of a paper");
-  CLI::App* luft_app = figures_app->add_subcommand("luft", "Luft, Balzer, Deussen 2007: 1 to 6");
-  luft_app->add_option("-o,--output", figures.output, "Folder to write")->capture_default_str();
-  luft_app->add_option("--species", figures.species, "Species of the main tree")
-      ->capture_default_str();
-  luft_app->add_option("--size", figures.size, "WxH of each picture")->capture_default_str();
-  addDeviceOptions(*luft_app, figures.device);
+  const auto add_figures = [figures_app](const char* name, const char* help,
+                                         FiguresCommand& figures) {
+    CLI::App* paper = figures_app->add_subcommand(name, help);
+    paper->add_option("-o,--output", figures.output, "Folder to write")->capture_default_str();
+    paper->add_option("--species", figures.species, "Species of the main tree")
+        ->capture_default_str();
+    paper->add_option("--size", figures.size, "WxH of each picture")->capture_default_str();
+    addDeviceOptions(*paper, figures.device);
+    return paper;
+  };
+  CLI::App* luft_app = add_figures("luft", "Luft, Balzer, Deussen 2007: 1 to 6", luft);
+  CLI::App* gumbau_app =
+      add_figures("gumbau", "Gumbau, Chover, Rebollo, Remolar 2008: 1 to 5", gumbau);
   SkyReport sky_figures;
   CLI::App* habel_app = figures_app->add_subcommand("sky", "Habel 2009: 5.3 to 5.7");
   habel_app->add_option("-o,--output", sky_figures.folder, "Folder to write")
@@ -356,7 +363,8 @@ int run(int argc, char** argv) {
         "command line", "no command is named",
         "use grow, inspect, bake, render, reference, compare, sky, figures or report; see " + help);
   if (*figures_app && figures_app->get_subcommands().empty())
-    throw Error("figures", "no paper is named", "use luft or sky; see verdure figures --help");
+    throw Error("figures", "no paper is named",
+                "use luft, gumbau or sky; see verdure figures --help");
   if (*report_app && !*fidelity_app)
     throw Error("report", "nothing is named", "use fidelity; see verdure report --help");
   for (const CLI::Option* option : render_app->get_options())
@@ -376,7 +384,8 @@ int run(int argc, char** argv) {
   if (*reference_app) runReference(reference);
   if (*compare_app) return runCompare(compare);
   if (*sky_app) runSky(sky);
-  if (*luft_app) runLuftFigures(figures);
+  if (*luft_app) runLuftFigures(luft);
+  if (*gumbau_app) runGumbauFigures(gumbau);
   if (*habel_app) writeSkyReport(sky_figures);
   if (*fidelity_app) runFidelityReport(fidelity);
   return 0;

@@ -9,10 +9,16 @@ layout(push_constant) uniform DrawBlock { DrawUniforms draw; };
 layout(location = 0) in vec2 uv;
 layout(location = 0) out vec4 out_texel;
 
+/// As halves hold it, rounded down: the nearest leaf is then never nearer than it is, and shades no
+/// part of itself. Left to the device, some would round up.
+vec2 roundedDown(vec2 value) {
+  return uintBitsToFloat(floatBitsToUint(value) & 0xffffe000u);
+}
+
 void main() {
   vec4 texel = vec4(1.0);
   if (kTextures || kAlphaTest) texel = texture(base_color, uv);
   if (kAlphaTest && texel.a < draw.surface.x) discard;
   float depth = leafOpticalDepth(kTextures ? texel.rgb * draw.color.rgb : draw.matt.rgb);
-  out_texel = vec4(1.0 - gl_FragCoord.z, gl_FragCoord.z, 1.0, depth);
+  out_texel = vec4(roundedDown(vec2(1.0 - gl_FragCoord.z, gl_FragCoord.z)), 1.0, depth);
 }

@@ -40,7 +40,8 @@ double difference(const Image& a, const Image& b) {
 TEST_F(CommandLineRender, BothLights) {
   const std::string tree = smallTree("tree.glb", 3);
   Json expressive_report, standard_report, baked_report;
-  const Image expressive = picture(tree, {"--grid", "40"}, &expressive_report);
+  const Image expressive =
+      picture(tree, {"--light", "expressive", "--grid", "40"}, &expressive_report);
   const Image standard = picture(tree, {"--light", "standard"}, &standard_report);
   const double of_lights = difference(expressive, standard);
   EXPECT_GT(of_lights, 0.1);
@@ -48,11 +49,39 @@ TEST_F(CommandLineRender, BothLights) {
   EXPECT_EQ(standard_report["bake_seconds"], 0.0);  // a light of leaf normals needs none
   // What a file brought along is used: the same picture, but for the rounding of the file.
   runWell({"bake", tree, "-o", path("baked.glb"), "--grid", "40"});
-  const Image baked = picture(path("baked.glb"), {}, &baked_report);
+  const Image baked = picture(path("baked.glb"), {"--light", "expressive"}, &baked_report);
   EXPECT_EQ(baked_report["bake_seconds"], 0.0);
   EXPECT_LT(difference(expressive, baked), 0.1 * of_lights);
-  const std::string said = runWell({"render", tree, "-o", path("out.png"), "--size", "32x32"});
+  const std::string said =
+      runWell({"render", tree, "-o", path("out.png"), "--size", "32x32", "--light", "expressive"});
   EXPECT_NE(said.find("out.png: 32x32, expressive light, on "), std::string::npos) << said;
+}
+
+TEST_F(CommandLineRender, TheBestLightUsesWhatTheFileHas) {
+  const std::string tree = smallTree("tree.glb", 3);
+  Json baked_report, traced_report, transfer_report;
+  const Image baked = picture(tree, {}, &baked_report);
+  EXPECT_EQ(baked_report["light"], "best (baked)");
+  EXPECT_GT(baked_report["bake_seconds"], 0.0);
+  runWell({"bake", tree, "-o", path("traced.glb"), "--transfer", "3", "--rays", "16"});
+  const Image best = picture(path("traced.glb"), {}, &traced_report);
+  EXPECT_EQ(traced_report["light"], "best (transfer vectors)");
+  const Image transfer = picture(path("traced.glb"), {"--light", "transfer"}, &transfer_report);
+  EXPECT_EQ(transfer_report["light"], "transfer");
+  // The shadows alone make the difference between these two.
+  EXPECT_EQ(difference(transfer, picture(path("traced.glb"), {"--shadows", "map"})), 0.0);
+  EXPECT_GT(difference(transfer, best), 0.0);
+  EXPECT_GT(difference(baked, best), difference(transfer, best));
+}
+
+TEST_F(CommandLineRender, ShadowsFromEachSource) {
+  const std::string tree = smallTree("tree.glb", 3);
+  std::vector<Image> pictures;
+  for (const char* source : {"map", "paper", "layers", "ordered"})
+    pictures.push_back(picture(tree, {"--light", "depth-maps", "--shadows", source}));
+  for (std::size_t i = 0; i < pictures.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k) EXPECT_GT(difference(pictures[i], pictures[k]), 0.0);
+  EXPECT_EQ(difference(pictures[2], picture(tree, {"--light", "depth-maps"})), 0.0);
 }
 
 TEST_F(CommandLineRender, OptionsOfTheView) {
@@ -65,7 +94,8 @@ TEST_F(CommandLineRender, OptionsOfTheView) {
   EXPECT_GT(difference(plain, picture(tree, {"--fov", "60", "--camera", "9,4,9,0,6,0"})), 1.0);
   EXPECT_GT(difference(plain, picture(tree, {"--terms", "ambient"})), 1.0);
   EXPECT_EQ(
-      difference(plain, picture(tree, {"--terms", "ambient,diffuse,specular,shadow,textures"})),
+      difference(plain, picture(tree, {"--terms",
+                               "ambient,diffuse,specular,shadow,textures,transmission,gloss"})),
       0.0);
   EXPECT_GT(difference(plain, picture(tree, {"--turbidity", "8"})), 1.0);
   EXPECT_GT(difference(plain, picture(tree, {"--sky", "cie:1"})), 1.0);
@@ -147,10 +177,6 @@ TEST_F(CommandLineRender, LeavesAreLookedAtWhereTheFileHasNoVisibility) {
   const std::string tree = smallTree("tree.glb", 3);
   const Words light = {"--light", "depth-maps", "--no-ground", "--background",
                        "0,0,0",   "--exposure", "14"};
-  const Outcome known =
-      run({"render", path("none.glb"), "-o", path("out.png"), "--light", "depth-maps"});
-  if (known.err.find("no preset") != std::string::npos)
-    GTEST_SKIP() << "no preset has this light yet";
   const auto with = [&light](const Words& more) {
     Words all = light;
     all.insert(all.end(), more.begin(), more.end());
@@ -180,6 +206,7 @@ TEST_F(CommandLineRender, Refuses) {
     command.insert(command.end(), options.begin(), options.end());
     expectRefused(command, said);
   };
+  refused({"--shadows", "soft"}, {"--shadows", "'soft'", "ordered"});
   refused({"--light", "candle"}, {"\"candle\"", "standard, expressive"});
   for (const char* terms : {"glow", "ambient,glow"})
     refused({"--terms", terms}, {"--terms: 'glow'"});

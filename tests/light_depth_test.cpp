@@ -1,7 +1,9 @@
 // Light depth maps: Gumbau, Chover, Rebollo, Remolar 2008.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <vector>
 
 #include "render_fixture.h"
 #include "shared/foliage_shadow.h"
@@ -38,13 +40,13 @@ TEST(FoliageShadow, FiltersByWhatIsCovered) {
     EXPECT_NEAR(layers.near, 0.2f, 1e-6f);
     EXPECT_NEAR(layers.far, 0.8f, 1e-6f);
     EXPECT_NEAR(shared::spreadDepth(layers, 0.5f), 1.5f, 1e-5f);
-    const glm::vec3 through = shared::throughLayers(layers, 1.5f, {1.0f, 0.5f, 2.0f});
+    const glm::vec3 through = shared::throughLayers(layers, 1.5f, {1.0f, 0.5f, 2.0f}, 1.0f);
     EXPECT_NEAR(through.x, 1.0f - covered + covered * std::exp(-1.5f), 1e-6f);
     EXPECT_NEAR(through.y, 1.0f - covered + covered * std::exp(-0.75f), 1e-6f);
     EXPECT_NEAR(through.z, 1.0f - covered + covered * std::exp(-3.0f), 1e-6f);
   }
   const shared::LeafLayers empty = shared::leafLayers(glm::vec4(0.0f));
-  EXPECT_EQ(shared::throughLayers(empty, shared::spreadDepth(empty, 0.5f), glm::vec3(1.0f)),
+  EXPECT_EQ(shared::throughLayers(empty, shared::spreadDepth(empty, 0.5f), glm::vec3(1.0f), 1.0f),
             glm::vec3(1.0f));
   EXPECT_EQ(shared::paperShadow(empty, 0.5f, 2.0f), 1.0f);
 }
@@ -144,7 +146,8 @@ TEST_F(LightDepth, TheGroundSeesEveryLayer) {
       view.camera = {{0, 0.9f, 0.001f}, {0, 0, 0}, 0.3f};  // below the lowest card
       glm::vec3 through(1.0f);
       for (int i = 0; i < layers; ++i) through *= shared::leafTransmittance(kGreen);
-      // alpha^C, and half floats: 11 bits of an optical depth of up to 10.
+      if (source == ShadowSource::kDepthOrdered && layers > 0) through *= shared::shareBelowCrown();
+      // Half floats: 11 bits of an optical depth of up to 10.
       expectPixel(renderer().render(view).hdr, 32, 24, 0.18f * sunLight(view) * through, 0.01f);
     }
 }
@@ -201,7 +204,8 @@ TEST_F(LightDepth, WoodInsideSeesTheLayersInFrontOfItAndHidesLeaves) {
     View view = zenithView(source);
     // Between the upper cards and the slab; the leaf behind the slab does not count.
     view.camera = {{0, 2.7f, 0.001f}, {0, 2, 0}, 0.1f};
-    expectPixel(renderer().render(view).hdr, 32, 24, sunLight(view) * k_t * k_t, 0.01f);
+    const float share = source == ShadowSource::kDepthOrdered ? shared::shareBelowCrown() : 1.0f;
+    expectPixel(renderer().render(view).hdr, 32, 24, sunLight(view) * k_t * k_t * share, 0.01f);
     // The leaf under the slab is in its shadow, seen from either side.
     view.terms.transmission = true;
     for (const float eye : {1.9f, -2.0f}) {
@@ -237,6 +241,104 @@ TEST_F(LightDepth, HolesInLeavesLetAllLightThrough) {
   EXPECT_GT(lit, 300);
   EXPECT_GT(dark, 300);
   EXPECT_LT(wrong, 10);
+}
+
+TEST_F(LightDepth, HalfShadowsAreAsWideAsTheSunsDiskMakesThem) {
+  // The half-plane x < 0 at a height of 1 m and 2 m, of leaves or of wood: at x on the ground the
+  // share of the disk, of radius r = height tan(radius) there, that is not behind it.
+  for (const float height : {1.0f, 2.0f})
+    for (const PartKind kind : {PartKind::kFoliage, PartKind::kWood}) {
+      Plant card = whiteQuad(glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
+      card.meshes[0] = {};
+      card.meshes[0].kind = kind;
+      addQuad(card.meshes[0], {-1.0f, height, 1.0f}, {2.0f, 0, 0}, {0, 0, -2.0f});
+      Scene scene;
+      scene.items = {{&card, nullptr}};
+      scene.items[0].seen = false;
+      renderer().setScene(scene);
+      View view = zenithView(ShadowSource::kDepthLayers);
+      view.daylight.sun.angular_radius = 0.03f;
+      setSun(view, {0, 1, 0}, glm::vec3(1.0f));
+      view.shadow_map_size = 512;
+      view.width = 200;
+      view.height = 50;
+      constexpr float kHalf = 0.16f;  // of the ground seen, m
+      view.camera = {{0, 4.0f, 0.001f}, {0, 0, 0}, 2.0f * std::atan(kHalf / 4.0f / 4.0f)};
+      const HdrImage image = renderer().render(view).hdr;
+      const double r = height * std::tan(0.03);
+      double squares = 0.0;
+      for (int x = 0; x < 200; ++x) {
+        double mean = 0.0;
+        for (int y = 0; y < 50; ++y) mean += double{image.at(x, y).g} / 0.18 / 50.0;
+        const double at = kHalf * (x + 0.5 - 100.0) / 100.0;
+        const double u = std::clamp(at / r, -1.0, 1.0);
+        const double open = 0.5 + (std::asin(u) + u * std::sqrt(1.0 - u * u)) / glm::pi<double>();
+        squares += (mean - open) * (mean - open) / 200.0;
+      }
+      EXPECT_LT(std::sqrt(squares), 0.07) << height << " m, wood " << (kind == PartKind::kWood);
+    }
+}
+
+TEST_F(LightDepth, ScatteringIsTheSameForATexelWhereverItIsSeenFrom) {
+  Plant quad = whiteQuad();
+  quad.textures = {{"leaf", Image(16, 16), false, false}};
+  std::fill(quad.textures[0].image.rgba.begin(), quad.textures[0].image.rgba.end(), 255);
+  quad.materials[0].base_color = glm::vec4(kGreen, 1.0f);
+  quad.materials[0].base_color_texture = 0;
+  quad.materials[0].optical_thickness = 0.8f;
+  setItem(quad, nullptr);
+  View view = zenithView(ShadowSource::kDepthLayers);
+  view.terms.textures = view.terms.scattering = true;
+  view.terms.shadow = false;
+  setSun(view, {0, 0, 1}, glm::vec3(1.0f));
+  const float least = shared::scatteredLight(0.8f, 0.8f), most = shared::scatteredLight(0.8f, 0.0f);
+  std::vector<float> seen[2];
+  for (const int k : {0, 1}) {
+    view.width = view.height = k == 0 ? 256 : 160;
+    view.camera = {{k == 0 ? 0.0f : 0.4f, 0, k == 0 ? 5.0f : 7.0f}, {0, 0, 0}, 0.45f};
+    const HdrImage image = renderer().render(view).hdr;
+    for (int y = 0; y < 16; ++y)
+      for (int x = 0; x < 16; ++x) {  // the texels' middles
+        const glm::ivec2 at = pixelOf(view, {-1.0f + (static_cast<float>(x) + 0.5f) / 8.0f,
+                                             1.0f - (static_cast<float>(y) + 0.5f) / 8.0f, 0.0f});
+        seen[k].push_back(image.at(at.x, at.y).g / kGreen.g);
+        EXPECT_GT(seen[k].back(), least - 2e-3f);
+        EXPECT_LT(seen[k].back(), most + 2e-3f);
+      }
+  }
+  double mean = 0.0;
+  for (std::size_t i = 0; i < 256; ++i) {
+    EXPECT_NEAR(seen[0][i], seen[1][i], 2e-3f) << i;
+    mean += seen[0][i] / 256.0;
+  }
+  EXPECT_NEAR(mean, shared::meanScatteredLight(0.8f), 0.02);
+  EXPECT_GT(*std::max_element(seen[0].begin(), seen[0].end()), most - 0.03f);  // not all alike
+  EXPECT_LT(*std::min_element(seen[0].begin(), seen[0].end()), least + 0.03f);
+  // From afar, the mean.
+  view.width = view.height = 64;
+  view.camera = {{0, 0, 60.0f}, {0, 0, 0}, 0.2f};
+  expectPixel(renderer().render(view).hdr, 32, 32, kGreen * shared::meanScatteredLight(0.8f),
+              2e-3f);
+}
+
+TEST_F(LightDepth, ThicknessComesFromTheMap) {
+  Plant quad = whiteQuad(glm::vec4(kGreen, 1.0f));
+  Image map(4, 4);
+  for (std::size_t i = 0; i < map.rgba.size(); ++i) map.rgba[i] = i % 4 == 1 ? 102 : 7;  // green
+  quad.textures = {{"thickness", map, false, false}};
+  quad.materials[0].optical_thickness = 2.0f;
+  quad.materials[0].thickness_texture = 0;
+  setItem(quad, nullptr);
+  View view = zenithView(ShadowSource::kDepthLayers);
+  view.terms.scattering = true;
+  view.terms.shadow = false;
+  setSun(view, {0, 0, 1}, glm::vec3(1.0f));
+  view.camera = {{0, 0, 5.0f}, {0, 0, 0}, 0.3f};
+  expectCenter(view, kGreen * shared::meanScatteredLight(2.0f * 102.0f / 255.0f));
+  // Without a thickness, that of the colour.
+  quad.materials[0].optical_thickness = 0.0f;
+  setItem(quad, nullptr);
+  expectCenter(view, kGreen * shared::meanScatteredLight(shared::leafOpticalDepth(kGreen)));
 }
 
 }  // namespace

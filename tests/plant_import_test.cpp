@@ -305,6 +305,24 @@ TEST(GltfImport, ReadsMaterialsAndLeavesUnknownImagesOut) {
   EXPECT_TRUE(hasNote(plant, "EXT_texture_webp"));
 }
 
+TEST(GltfImport, ReadsHowThickLeavesAre) {
+  BoxFile file;
+  file.json["materials"] = Json::array();
+  const auto add = [&file](const Json& volume) {
+    file.json["materials"].push_back({{"extensions", {{"KHR_materials_volume", volume}}}});
+  };
+  add({{"thicknessFactor", 0.0003}, {"attenuationDistance", 0.0002}});
+  add({{"thicknessFactor", 0.0003}});  // clear
+  add({{"attenuationDistance", 0.0002}});
+  add({{"thicknessFactor", 1e9}, {"attenuationDistance", 1e-9}});
+  const Plant plant = load(file);
+  EXPECT_FLOAT_EQ(plant.materials[0].optical_thickness, 1.5f);
+  EXPECT_EQ(plant.materials[0].thickness_texture, -1);
+  EXPECT_EQ(plant.materials[1].optical_thickness, 0.0f);
+  EXPECT_EQ(plant.materials[2].optical_thickness, 0.0f);
+  EXPECT_EQ(plant.materials[3].optical_thickness, 100.0f);
+}
+
 TEST(GltfImport, UsesTheDefaultSceneAlone) {
   BoxFile file;
   file.node({{"mesh", 0}, {"translation", {5, 0, 0}}}, false);

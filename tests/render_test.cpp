@@ -25,6 +25,8 @@ TEST(Terms, PresetsAreThePublishedCombinations) {
   EXPECT_EQ(presetTerms("depth-maps").ambient_source, AmbientSource::kLeafVisibility);
   EXPECT_EQ(presetTerms("depth-maps").shadow_source, ShadowSource::kDepthLayers);
   EXPECT_TRUE(presetTerms("depth-maps").scattering);
+  EXPECT_EQ(presetTerms("best").ambient_source, AmbientSource::kTransfer);
+  EXPECT_EQ(presetTerms("best").shadow_source, ShadowSource::kDepthOrdered);
   EXPECT_THROW(presetTerms("impressive"), Error);
 }
 

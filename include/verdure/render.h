@@ -36,10 +36,13 @@ enum class AmbientSource {
 /// alpha^C of the leaves in front of them, alpha what a leaf lets through, tinted as it is, and the
 /// ground's half-shadow is as wide as the sun's disk and the distance make it.
 enum class ShadowSource {
-  kShadowMap,     ///< all or nothing, by the nearest surface
-  kDepthPaper,    ///< leaves by the paper's (4)
-  kDepthLayers,   ///< leaves see the share of the layers in front of them, spread evenly
-  kDepthOrdered,  ///< ... of which the first and the last are where they are
+  kShadowMap,    ///< all or nothing, by the nearest surface
+  kDepthPaper,   ///< leaves by the paper's (4)
+  kDepthLayers,  ///< leaves see the share of the layers in front of them, spread evenly
+  /// ... of which the first and the last are where they are. Below the crown arrives the share of
+  /// the light through leaves that a tree alone casts there (shared::shareBelowCrown()). Where
+  /// transfer vectors, which know all light through leaves, light a surface, the sun alone passes.
+  kDepthOrdered,
 };
 
 /// The terms of illumination model (1) of Luft et al. 2007, each with its switch, and light through
@@ -63,7 +66,8 @@ struct Terms {
 /// Published combinations: "standard" (leaf normals, constant ambient), "expressive" (Luft: crown
 /// normals, baked ambient), "transfer" (Habel: leaf normals, transfer vectors, transmission; and
 /// gloss) and "depth-maps" (Gumbau: leaf normals, leaf visibility, transmission, scattering, light
-/// depth maps).
+/// depth maps). "best" is what comes closest to the path tracer (docs/fidelity.md): transfer with
+/// kDepthOrdered.
 /// Throws Error for an unknown name.
 Terms presetTerms(const std::string& name);
 const std::vector<std::string>& presetNames();

@@ -100,7 +100,7 @@ struct RenderCommand : SceneOptions {
   BakeParameters bake;
   bool bake_again =
       false;  ///< parameters of the bake were given: the file's own light is not theirs
-  std::string light = "expressive";
+  std::string light = "best";
   std::string terms;
   std::string shadows;  ///< empty: the light's own
   DaylightOptions daylight;

@@ -30,8 +30,8 @@ inline Terms presetWith(const char* preset, ShadowSource source) {
 }
 
 /// What `best` is without transfer vectors.
-inline Terms bakedOrdered() {
-  Terms terms = presetWith("transfer", ShadowSource::kDepthOrdered);
+inline Terms bestBaked() {
+  Terms terms = presetTerms("best");
   terms.ambient_source = AmbientSource::kBaked;
   return terms;
 }
@@ -45,10 +45,9 @@ inline const std::array<Candidate, 9> kCandidates{{
     {"depth-maps, layers", presetTerms("depth-maps"), CrownBake::kLeafVisibility, true},
     {"depth-maps, ordered", presetWith("depth-maps", ShadowSource::kDepthOrdered),
      CrownBake::kLeafVisibility, true},
-    {"baked, ordered", bakedOrdered(), CrownBake::kOpticalDepth, false},
     {"transfer", presetTerms("transfer"), CrownBake::kOpticalDepth, true},
-    {"transfer, ordered", presetWith("transfer", ShadowSource::kDepthOrdered),
-     CrownBake::kOpticalDepth, true},
+    {"best, baked", bestBaked(), CrownBake::kOpticalDepth, false},
+    {"best", presetTerms("best"), CrownBake::kOpticalDepth, true},
 }};
 
 struct SunPosition {

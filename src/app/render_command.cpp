@@ -180,7 +180,9 @@ void runRender(const RenderCommand& command) {
   std::optional<PlantTransfer> transfer;
   if (view.terms.ambient_source == AmbientSource::kTransfer) {
     transfer = loadTransfer(command.input, plant);
-    if (!transfer)
+    if (!transfer && command.light == "best")
+      view.terms.ambient_source = AmbientSource::kBaked;
+    else if (!transfer)
       throw Error(command.input,
                   fmt::format("has no transfer vectors ({} is not there)",
                               transferPath(command.input).string()),
@@ -219,9 +221,13 @@ void runRender(const RenderCommand& command) {
   else
     writePng(frame.image, command.output);
   progress.show("done");
+  const std::string light_name =
+      command.light == "best" ? (transfer ? "best (transfer vectors)" : "best (baked)")
+                              : command.light;
   if (command.json)
     fmt::print("{}\n",
                nlohmann::ordered_json{{"device", renderer.deviceName()},
+                                      {"light", light_name},
                                       {"width", view.width},
                                       {"height", view.height},
                                       {"bake_seconds", bake_seconds},
@@ -236,7 +242,7 @@ void runRender(const RenderCommand& command) {
                    .dump(2));
   else
     fmt::print("{}: {}x{}, {} light, on {}; shadow {:.1f} ms, colour {:.1f} ms, tone {:.1f} ms\n",
-               command.output, view.width, view.height, command.light, renderer.deviceName(),
+               command.output, view.width, view.height, light_name, renderer.deviceName(),
                frame.times.shadow_ms, frame.times.color_ms, frame.times.tone_ms);
 }
 

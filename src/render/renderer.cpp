@@ -27,7 +27,13 @@ const std::vector<Preset>& presets() {
         .ambient_source = AmbientSource::kLeafVisibility,
         .shadow_source = ShadowSource::kDepthLayers,
         .transmission = true,
-        .scattering = true}}};
+        .scattering = true}},
+      {"best",
+       {.normal = NormalSource::kLeaf,
+        .ambient_source = AmbientSource::kTransfer,
+        .shadow_source = ShadowSource::kDepthOrdered,
+        .transmission = true,
+        .gloss = true}}};
   return all;
 }
 

@@ -55,8 +55,8 @@ float blockerDistance(ShadowLookup from) {
                          frame.cascade[from.cascade].x, kWidestShadow);
   from.turn = normalize(from.turn) * (max(widest, kPoissonRadius) * frame.sun_light.w);
   vec2 sum = vec2(0.0);
-  for (int i = 0; i < 5; ++i) {
-    vec2 tap = i < 4 ? tapOf(from, kSquare[i]) : from.at.xy;
+  for (int i = 0; i < 13; ++i) {
+    vec2 tap = i < 12 ? tapOf(from, kPoissonDisk[i]) : from.at.xy;
     LeafLayers layers = leafLayers(foliageTap(from.cascade, tap));
     sum += layers.covered * vec2(from.z - 0.5 * (layers.near + layers.far), 1.0);
     float wood = texture(shadow_depth, vec3(tap, float(from.cascade))).r;

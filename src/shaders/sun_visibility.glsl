@@ -17,6 +17,9 @@ const float kPoissonRadius = 1.7;
 /// Towards the border of a map the disk grows, by this factor at most, to meet that of the next.
 const float kWidestPoisson = 2.0;
 
+/// Taps of a half-shadow.
+const int kSoftTaps = 8;
+
 /// Half-shadows are at most this wide, texels: few taps further apart would be seen one by one.
 const float kWidestShadow = 24.0;
 
@@ -55,8 +58,8 @@ float blockerDistance(ShadowLookup from) {
                          frame.cascade[from.cascade].x, kWidestShadow);
   from.turn = normalize(from.turn) * (max(widest, kPoissonRadius) * frame.sun_light.w);
   vec2 sum = vec2(0.0);
-  for (int i = 0; i < 13; ++i) {
-    vec2 tap = i < 12 ? tapOf(from, kPoissonDisk[i]) : from.at.xy;
+  for (int i = 0; i < 5; ++i) {
+    vec2 tap = i < 4 ? tapOf(from, kSquare[i]) : from.at.xy;
     LeafLayers layers = leafLayers(foliageTap(from.cascade, tap));
     sum += layers.covered * vec2(from.z - 0.5 * (layers.near + layers.far), 1.0);
     float wood = texture(shadow_depth, vec3(tap, float(from.cascade))).r;
@@ -82,12 +85,14 @@ vec3 layeredVisibility(ShadowLookup from, vec4 leaf, bool soft) {
   float texels = length(from.turn) / frame.sun_light.w;
   from.turn *= clamp(radius, texels, max(texels, kWidestShadow)) / texels;
   vec4 leaves = vec4(0.0);
-  for (int i = 0; i < 12; ++i) {
+  for (int i = 0; i < kSoftTaps; ++i) {
     vec2 tap = tapOf(from, kPoissonDisk[i]);
-    open += openTap(from, tap) / 12.0;
-    leaves += foliageTap(from.cascade, tap) / 12.0;
+    float here = openTap(from, tap);
+    open += here;
+    leaves += here * foliageTap(from.cascade, tap);  // behind wood there are none in the map
   }
-  return open * throughLeaves(from.cascade, leaves, from.z, leaf);
+  if (open <= 0.0) return vec3(0.0);
+  return open / float(kSoftTaps) * throughLeaves(from.cascade, leaves / open, from.z, leaf);
 }
 
 /// Share of the sun by one cascade's maps. The taps lie on a disk turned by an angle of its own for

@@ -14,11 +14,9 @@ class FigureSet {
   /// `introduction` ends in "on " or the like: the device's name follows.
   FigureSet(const FiguresCommand& command, const std::string& title,
             const std::string& introduction)
-      : renderer_(command.device),
-        page_(command.output, title, introduction + renderer_.deviceName() + ".") {
-    std::tie(view_.width, view_.height) = parseSize(command.size);
-    view_.daylight = parseDaylight({});
-  }
+      : view_(viewOf(command)),
+        renderer_(command.device),
+        page_(command.output, title, introduction + renderer_.deviceName() + ".") {}
 
   Renderer& renderer() { return renderer_; }
   Page& page() { return page_; }
@@ -39,6 +37,13 @@ class FigureSet {
   }
 
  private:
+  static View viewOf(const FiguresCommand& command) {
+    View view;
+    std::tie(view.width, view.height) = parseSize(command.size);
+    view.daylight = parseDaylight({});
+    return view;
+  }
+
   View view_;
   Renderer renderer_;
   Page page_;  ///< last: what is refused leaves no folder behind

@@ -94,8 +94,9 @@ TEST_F(CommandLineRender, OptionsOfTheView) {
   EXPECT_GT(difference(plain, picture(tree, {"--fov", "60", "--camera", "9,4,9,0,6,0"})), 1.0);
   EXPECT_GT(difference(plain, picture(tree, {"--terms", "ambient"})), 1.0);
   EXPECT_EQ(
-      difference(plain, picture(tree, {"--terms",
-                               "ambient,diffuse,specular,shadow,textures,transmission,gloss"})),
+      difference(plain,
+                 picture(tree, {"--terms",
+                                "ambient,diffuse,specular,shadow,textures,transmission,gloss"})),
       0.0);
   EXPECT_GT(difference(plain, picture(tree, {"--turbidity", "8"})), 1.0);
   EXPECT_GT(difference(plain, picture(tree, {"--sky", "cie:1"})), 1.0);

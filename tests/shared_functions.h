@@ -40,8 +40,8 @@ SHARED_FUNCTION SharedResults evaluateShared(vec4 a, vec4 b) {
   float diffuse = diffuseFactor(n, l);
   float specular = specularFactor(n, l, v, 1.0f + 20.0f * b.x);
   vec3 color = vec3(a.w, b.w, b.z);
-  vec3 lit = illumination(vec3(0.4f, 0.5f, 0.6f) * k, vec3(1.7f, 1.6f, 1.4f), vec3(b.y), color * diffuse,
-                          0.06f, specular);
+  vec3 lit = illumination(vec3(0.4f, 0.5f, 0.6f) * k, vec3(1.7f, 1.6f, 1.4f), vec3(b.y),
+                          color * diffuse, 0.06f, specular);
   vec3 dome = domeDirection(l);
   vec3 mean = groundMeanColor();
   SharedResults r;

@@ -213,7 +213,8 @@ int run(int argc, char** argv) {
   addSceneOptions(*render_app, render);
   render_app->add_option("-o,--output", render.output, "File to write: .png, or .exr in kcd/m^2")
       ->required();
-  render_app->add_option("--light", render.light, "best, standard, expressive, transfer or depth-maps")
+  render_app
+      ->add_option("--light", render.light, "best, standard, expressive, transfer or depth-maps")
       ->capture_default_str();
   render_app->add_option("--terms", render.terms,
                          "Only these terms: ambient,diffuse,specular,shadow,textures,transmission,"

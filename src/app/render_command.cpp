@@ -221,9 +221,9 @@ void runRender(const RenderCommand& command) {
   else
     writePng(frame.image, command.output);
   progress.show("done");
-  const std::string light_name =
-      command.light == "best" ? (transfer ? "best (transfer vectors)" : "best (baked)")
-                              : command.light;
+  const std::string light_name = command.light == "best"
+                                     ? (transfer ? "best (transfer vectors)" : "best (baked)")
+                                     : command.light;
   if (command.json)
     fmt::print("{}\n",
                nlohmann::ordered_json{{"device", renderer.deviceName()},

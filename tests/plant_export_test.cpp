@@ -333,8 +333,6 @@ Plant grownPlant() {
     material.alpha_mode = AlphaMode::kMask;
     material.alpha_cutoff = 0.25f;
     material.double_sided = true;
-    material.optical_thickness = 0.7f;
-    material.thickness_texture = 1;
   }
   for (const char* name : {"color", "normal"}) {
     Texture& texture = plant.textures.emplace_back();
@@ -363,8 +361,6 @@ TEST(Export, WritesGrownPlantsAsNewFiles) {
       EXPECT_EQ(a.double_sided, b.double_sided);
       EXPECT_EQ(a.base_color_texture, b.base_color_texture);
       EXPECT_EQ(a.normal_texture, b.normal_texture);
-      EXPECT_EQ(a.thickness_texture, b.thickness_texture);
-      EXPECT_EQ(a.optical_thickness, b.optical_thickness);
       EXPECT_EQ(plant.textures[m].image.rgba, back.textures[m].image.rgba);
       EXPECT_TRUE(back.textures[m].clamp_u);
       EXPECT_FALSE(back.textures[m].clamp_v);

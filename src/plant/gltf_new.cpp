@@ -79,13 +79,6 @@ class DocumentBuilder {
     Json json = {{"name", material.name}, {"pbrMetallicRoughness", std::move(pbr)}};
     if (const int texture = textureOf(material.normal_texture); texture >= 0)
       json["normalTexture"] = {{"index", texture}, {"scale", material.normal_scale}};
-    if (material.optical_thickness > 0.0f) {
-      Json volume = {{"thicknessFactor", material.optical_thickness}, {"attenuationDistance", 1.0}};
-      if (const int texture = textureOf(material.thickness_texture); texture >= 0)
-        volume["thicknessTexture"] = {{"index", texture}};
-      json["extensions"]["KHR_materials_volume"] = std::move(volume);
-      document_.json["extensionsUsed"] = {"KHR_materials_volume"};
-    }
     if (material.alpha_mode == AlphaMode::kMask) {
       json["alphaMode"] = "MASK";
       json["alphaCutoff"] = material.alpha_cutoff;

@@ -69,6 +69,7 @@ FrameDrawer::FrameDrawer(const gpu::Device& device)
       layout_(device),
       transfer_pass_(device),
       shadow_pass_(device, layout_),
+      blocker_pass_(device),
       exposure_pass_(device),
       bloom_pass_(device),
       tone_pass_(device),
@@ -174,6 +175,7 @@ std::vector<Cascade> FrameDrawer::cascadesOf(const GpuScene& scene, const View& 
                    .snap = cascade_trial_.snap});
   // Layers that are there stay when fewer are needed: the next frame may need them again.
   const auto layers = static_cast<std::uint32_t>(cascades.size());
+  bool other_maps = false;
   if (!shadow_maps_ || shadow_maps_->request.width != size ||
       shadow_maps_->request.layers < layers) {
     using Usage = vk::ImageUsageFlagBits;
@@ -186,7 +188,7 @@ std::vector<Cascade> FrameDrawer::cascadesOf(const GpuScene& scene, const View& 
                                     .usage = Usage::eDepthStencilAttachment | Usage::eSampled,
                                     .aspect = kDepthAspect});
     frame_set_.setTexture(1, *shadow_maps_, *shadow_sampler_);
-    frame_set_.setTexture(7, *shadow_maps_, *texel_sampler_);
+    other_maps = true;
   }
   // A single texel stands in where leaves are in the shadow map.
   const bool depth_maps = view.terms.shadow_source != ShadowSource::kShadowMap;
@@ -202,6 +204,11 @@ std::vector<Cascade> FrameDrawer::cascadesOf(const GpuScene& scene, const View& 
                                     .layers = layers,
                                     .usage = Usage::eColorAttachment | Usage::eSampled});
     frame_set_.setTexture(6, *foliage_maps_, *foliage_sampler_);
+    other_maps = true;
+  }
+  if (other_maps) {
+    blocker_pass_.setSources(*foliage_maps_, *shadow_maps_, *foliage_sampler_, *texel_sampler_);
+    frame_set_.setTexture(7, blocker_pass_.result(), *foliage_sampler_);
   }
   return cascades;
 }
@@ -344,6 +351,7 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
       gpu::imageBarrier(commands, *foliage_maps_->image, kColorAspect, gpu::Use::kUndefined,
                         gpu::Use::kFragmentSampled);
     }
+    blocker_pass_.record(commands, depth_maps ? cascade_count : 0);
     timers_.stamp(commands, 1);
     recordColor(commands, scene, view, kind);
     timers_.stamp(commands, 2);

@@ -5,6 +5,7 @@
 
 #include "gpu/timers.h"
 #include "render/backdrop_pass.h"
+#include "render/blocker_pass.h"
 #include "render/bloom_pass.h"
 #include "render/cascades.h"
 #include "render/exposure_pass.h"
@@ -57,6 +58,7 @@ class FrameDrawer {
   TransferPass transfer_pass_;
   ShadowPass shadow_pass_;
   LightDepthPass light_depth_pass_;
+  BlockerPass blocker_pass_;
   PlantPass plant_pass_;
   BackdropPass backdrop_pass_;
   ExposurePass exposure_pass_;

@@ -20,11 +20,18 @@ void drawFullscreen(const vk::raii::CommandBuffer& commands, const gpu::Texture&
                     vk::DescriptorSet set) {
   gpu::imageBarrier(commands, *target.image, vk::ImageAspectFlagBits::eColor, gpu::Use::kUndefined,
                     gpu::Use::kColorAttachment);
-  const vk::RenderingAttachmentInfo color{.imageView = *target.view,
+  drawFullscreen(commands, *target.view, {target.request.width, target.request.height}, pipeline,
+                 layout, set);
+}
+
+void drawFullscreen(const vk::raii::CommandBuffer& commands, vk::ImageView target,
+                    vk::Extent2D size, const vk::raii::Pipeline& pipeline,
+                    vk::PipelineLayout layout, vk::DescriptorSet set) {
+  const vk::RenderingAttachmentInfo color{.imageView = target,
                                           .imageLayout = vk::ImageLayout::eColorAttachmentOptimal,
                                           .loadOp = vk::AttachmentLoadOp::eDontCare,
                                           .storeOp = vk::AttachmentStoreOp::eStore};
-  const vk::Rect2D area{.extent = {target.request.width, target.request.height}};
+  const vk::Rect2D area{.extent = size};
   commands.beginRendering({.renderArea = area,
                            .layerCount = 1,
                            .colorAttachmentCount = 1,

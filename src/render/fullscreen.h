@@ -15,6 +15,11 @@ void drawFullscreen(const vk::raii::CommandBuffer& commands, const gpu::Texture&
                     const vk::raii::Pipeline& pipeline, vk::PipelineLayout layout,
                     vk::DescriptorSet set);
 
+/// The same of one layer; its image must be kColorAttachment.
+void drawFullscreen(const vk::raii::CommandBuffer& commands, vk::ImageView target,
+                    vk::Extent2D size, const vk::raii::Pipeline& pipeline,
+                    vk::PipelineLayout layout, vk::DescriptorSet set);
+
 }  // namespace verdure
 
 #endif  // VERDURE_RENDER_FULLSCREEN_H_

@@ -45,7 +45,8 @@ void main() {
   vec3 position = frame.eye.xyz + distance * direction;
   vec3 n = vec3(0.0, 1.0, 0.0);
   vec3 color = kTextures ? grass(position.xz) : vec3(0.18);
-  vec3 visibility = kShadow ? sunVisibility(position, n, vec4(frame.leaf_tint.rgb, 0.0), true) : vec3(1.0);
+  vec3 visibility = vec3(1.0);
+  if (kShadow) visibility = sunVisibility(position, n, vec4(frame.leaf_tint.rgb, 0.0), true);
   vec3 ambient = kAmbientSource == kTransfer && frame.ground_map.z > 0.0 ? mappedLight(position)
                                                                          : frame.open_sky.rgb;
   vec3 lit = illumination(kAmbient ? ambient * color : vec3(0.0), frame.sun_light.rgb, visibility,

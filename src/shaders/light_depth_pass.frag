@@ -17,7 +17,7 @@ vec2 roundedDown(vec2 value) {
 
 void main() {
   vec4 texel = vec4(1.0);
-  if (kTextures || kAlphaTest) texel = texture(base_color, uv);
+  if (kTextures || kAlphaTest) texel = texture(base_color, uv, -1.0);  // as shadow_pass.frag
   if (kAlphaTest && texel.a < draw.surface.x) discard;
   float depth = leafOpticalDepth(kTextures ? texel.rgb * draw.color.rgb : draw.matt.rgb);
   out_texel = vec4(roundedDown(vec2(1.0 - gl_FragCoord.z, gl_FragCoord.z)), 1.0, depth);

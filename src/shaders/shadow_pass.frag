@@ -7,5 +7,7 @@ layout(push_constant) uniform DrawBlock { DrawUniforms draw; };
 layout(location = 0) in vec2 uv;
 
 void main() {
-  if (texture(base_color, uv).a < draw.surface.x) discard;
+  // One mip finer: outlines that are smoothed as wide as a texel would reach over the leaf's mesh,
+  // and shade be lost there.
+  if (texture(base_color, uv, -1.0).a < draw.surface.x) discard;
 }

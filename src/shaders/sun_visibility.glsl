@@ -17,9 +17,6 @@ const float kPoissonRadius = 1.7;
 /// Towards the border of a map the disk grows, by this factor at most, to meet that of the next.
 const float kWidestPoisson = 2.0;
 
-/// Taps of a half-shadow.
-const int kSoftTaps = 8;
-
 /// Half-shadows are at most this wide, texels: few taps further apart would be seen one by one.
 const float kWidestShadow = 24.0;
 
@@ -52,20 +49,13 @@ float shadowMapVisibility(ShadowLookup from) {
 }
 
 /// Mean distance from the point to what is in front of it, m, 0 if nothing is: leaves, halfway
-/// between the first and the last one, and wood. It is looked for over all that may hide the sun.
+/// between the first and the last one, and wood, for points that have nothing behind them.
 float blockerDistance(ShadowLookup from) {
-  float widest = min(from.z / frame.leaf_tint.w * tan(frame.sun_disk.w) /
-                         frame.cascade[from.cascade].x, kWidestShadow);
-  from.turn = normalize(from.turn) * (max(widest, kPoissonRadius) * frame.sun_light.w);
-  vec2 sum = vec2(0.0);
-  for (int i = 0; i < 5; ++i) {
-    vec2 tap = i < 4 ? tapOf(from, kSquare[i]) : from.at.xy;
-    LeafLayers layers = leafLayers(foliageTap(from.cascade, tap));
-    sum += layers.covered * vec2(from.z - 0.5 * (layers.near + layers.far), 1.0);
-    float wood = texture(shadow_depth, vec3(tap, float(from.cascade))).r;
-    if (wood < from.at.z) sum += vec2(from.z - wood, 1.0);
-  }
-  return sum.y > 0.0 ? max(sum.x, 0.0) / (sum.y * frame.leaf_tint.w) : 0.0;
+  vec2 size = vec2(textureSize(blocker_map, 0).xy * blockerBlock());
+  vec2 blocker = textureLod(blocker_map, vec3(from.at.xy / (frame.sun_light.w * size),
+                                              float(from.cascade)), 0.0).xy;
+  if (blocker.y <= 0.0) return 0.0;
+  return max(from.z - blocker.x / blocker.y, 0.0) / frame.leaf_tint.w;
 }
 
 /// What wood leaves open and leaves let through. The texels of leaves are filtered first, as their
@@ -85,22 +75,23 @@ vec3 layeredVisibility(ShadowLookup from, vec4 leaf, bool soft) {
   float texels = length(from.turn) / frame.sun_light.w;
   from.turn *= clamp(radius, texels, max(texels, kWidestShadow)) / texels;
   vec4 leaves = vec4(0.0);
-  for (int i = 0; i < kSoftTaps; ++i) {
+  for (int i = 0; i < 12; ++i) {
     vec2 tap = tapOf(from, kPoissonDisk[i]);
     float here = openTap(from, tap);
     open += here;
     leaves += here * foliageTap(from.cascade, tap);  // behind wood there are none in the map
   }
   if (open <= 0.0) return vec3(0.0);
-  return open / float(kSoftTaps) * throughLeaves(from.cascade, leaves / open, from.z, leaf);
+  return open / 12.0 * throughLeaves(from.cascade, leaves / open, from.z, leaf);
 }
 
 /// Share of the sun by one cascade's maps. The taps lie on a disk turned by an angle of its own for
 /// each texel of the map (Habel 2009, 5.5). The angle hangs on the world, not on the picture, so
-/// nothing swims when the camera moves. The point is moved off its surface, towards the sun's side,
-/// by the reach of the filter: in the normal's direction where the sun grazes it, towards the sun
-/// where it does not. A surface therefore never shades itself, and the shadow of another is displaced
-/// by less than three texels.
+/// nothing swims when the camera moves. A point of what is in the map itself is moved off its
+/// surface, towards the sun's side, by the reach of the filter: in the normal's direction where the
+/// sun grazes it, towards the sun where it does not. A surface therefore never shades itself, and the
+/// shadow of another is displaced by less than three texels. The ground, which is not in the map,
+/// stays where it is: a displacement is half of its error otherwise.
 vec3 cascadeVisibility(int cascade, vec3 world_position, vec3 geometric_normal, vec4 leaf,
                        bool soft) {
   vec3 l = frame.to_sun.xyz;
@@ -114,8 +105,9 @@ vec3 cascadeVisibility(int cascade, vec3 world_position, vec3 geometric_normal, 
   float grazing = sqrt(max(1.0 - n_l * n_l, 0.0));
   ShadowLookup from;
   from.cascade = cascade;
-  from.at = cascadePosition(cascade, world_position + n * ((radius + 0.7) * texel_m * grazing) +
-                                         l * texel_m);
+  float off_m = soft ? 0.0 : texel_m;
+  from.at = cascadePosition(cascade,
+                            world_position + (n * ((radius + 0.7) * grazing) + l) * off_m);
   from.z = from.at.z;
   from.at.z = min(from.at.z, 1.0);
   if (any(lessThan(from.at.xy, vec2(0.0))) || any(greaterThan(from.at.xy, vec2(1.0))))

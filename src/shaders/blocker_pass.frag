@@ -1,0 +1,26 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shared/foliage_shadow.h"
+// Mean depth of all that hides the sun in a block of texels of one cascade's maps: depth times
+// share of the block, and that share. The ground looks for its half-shadow's width here.
+layout(set = 0, binding = 0) uniform sampler2DArray foliage_map;
+layout(set = 0, binding = 1) uniform sampler2DArray shadow_depth;
+layout(push_constant) uniform CascadeBlock { int cascade; };
+layout(location = 0) out vec2 out_blocker;
+
+void main() {
+  vec2 texel = 1.0 / vec2(textureSize(shadow_depth, 0).xy);
+  vec2 corner = floor(gl_FragCoord.xy) * float(blockerBlock()) * texel;
+  vec2 sum = vec2(0.0);
+  // A quarter of the texels, in rows set off against each other: nothing thin slips through.
+  for (int y = 1; y < blockerBlock(); y += 4)
+    for (int x = 1 + (y / 2) % 4; x < blockerBlock(); x += 4) {
+      vec3 at = vec3(corner + vec2(x, y) * texel, float(cascade));  // amid four texels
+      LeafLayers leaves = leafLayers(textureLod(foliage_map, at, 0.0));
+      sum += leaves.covered * vec2(0.5 * (leaves.near + leaves.far), 1.0);
+      vec4 depth = textureGather(shadow_depth, at);
+      vec4 wood = 0.25 * vec4(lessThan(depth, vec4(1.0)));
+      sum += vec2(dot(wood, depth), dot(wood, vec4(1.0)));
+    }
+  out_blocker = sum * (16.0 / float(blockerBlock() * blockerBlock()));
+}

@@ -15,7 +15,6 @@ constexpr std::uint32_t kSkyVertex[] = {
 constexpr std::uint32_t kSkyFragment[] = {
 #include "shaders/sky_pass.frag.inc"
 };
-constexpr std::uint32_t kSlices = 64;  // as in ground_pass.vert
 
 /// The sky is the same with any terms.
 gpu::Constants skyConstants(const DrawKind& kind) {
@@ -54,7 +53,7 @@ void BackdropPass::record(const vk::raii::CommandBuffer& commands, const FrameLa
   if (ground) {
     commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
                           *ground_.at(termConstants(terms, kind)));
-    commands.draw(3 * kSlices, 1, 0, 0);
+    commands.draw(6, 1, 0, 0);
   }
   commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *sky_.at(skyConstants(kind)));
   commands.draw(3, 1, 0, 0);

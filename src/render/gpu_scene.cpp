@@ -92,6 +92,16 @@ void GpuScene::bindVertices(const vk::raii::CommandBuffer& commands, NormalSourc
   commands.bindIndexBuffer(*indices_.buffer, 0, vk::IndexType::eUint32);
 }
 
+void GpuScene::record(const vk::raii::CommandBuffer& commands, vk::PipelineLayout layout,
+                      vk::DescriptorSet frame_set, const Draw& draw) const {
+  commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, layout, 0,
+                              {frame_set, *material_sets_[draw.material]}, nullptr);
+  commands.pushConstants<shared::DrawUniforms>(layout, vk::ShaderStageFlagBits::eFragment, 0,
+                                               draw.uniforms);
+  commands.drawIndexed(draw.index_count, draw.instance_count, draw.first_index, draw.vertex_offset,
+                       draw.first_instance);
+}
+
 std::vector<vk::VertexInputBindingDescription> GpuScene::bindings(bool transfer) {
   return {
       {.binding = 0, .stride = sizeof(glm::vec3)},

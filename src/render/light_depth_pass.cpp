@@ -98,12 +98,7 @@ void LightDepthPass::drawCasters(const vk::raii::CommandBuffer& commands, const 
   for (const Draw& draw : scene.draws()) {  // wood comes first
     commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
                           *pipelines_.at(constantsOf(draw, terms)));
-    commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout.pipeline, 0,
-                                {frame_set, scene.materialSet(draw.material)}, nullptr);
-    commands.pushConstants<shared::DrawUniforms>(
-        *layout.pipeline, vk::ShaderStageFlagBits::eFragment, 0, draw.uniforms);
-    commands.drawIndexed(draw.index_count, draw.instance_count, draw.first_index,
-                         draw.vertex_offset, draw.first_instance);
+    scene.record(commands, *layout.pipeline, frame_set, draw);
   }
 }
 

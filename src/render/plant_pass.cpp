@@ -64,12 +64,7 @@ void PlantPass::record(const vk::raii::CommandBuffer& commands, const FrameLayou
   for (const Draw& draw : scene.draws()) {
     if (!draw.seen) continue;
     commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipelines_.at(keyOf(draw, terms)));
-    commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout.pipeline, 0,
-                                {frame_set, scene.materialSet(draw.material)}, nullptr);
-    commands.pushConstants<shared::DrawUniforms>(
-        *layout.pipeline, vk::ShaderStageFlagBits::eFragment, 0, draw.uniforms);
-    commands.drawIndexed(draw.index_count, draw.instance_count, draw.first_index,
-                         draw.vertex_offset, draw.first_instance);
+    scene.record(commands, *layout.pipeline, frame_set, draw);
   }
 }
 

@@ -103,8 +103,10 @@ class GpuScene {
 
   /// Binds all vertex streams and the index buffer; the normals are those asked for.
   void bindVertices(const vk::raii::CommandBuffer& commands, NormalSource normals) const;
-  vk::DescriptorSet materialSet(std::uint32_t material) const { return *material_sets_[material]; }
   const std::vector<Draw>& draws() const { return draws_; }
+  /// Draws one of them with the bound pipeline, of `layout`.
+  void record(const vk::raii::CommandBuffer& commands, vk::PipelineLayout layout,
+              vk::DescriptorSet frame_set, const Draw& draw) const;
   const Bounds& bounds() const { return bounds_; }
   bool ground() const { return ground_; }
   float groundHeight() const { return ground_height_; }

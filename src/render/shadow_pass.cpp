@@ -63,12 +63,7 @@ void ShadowPass::drawCasters(const vk::raii::CommandBuffer& commands, const Fram
   for (const Draw& draw : scene.draws()) {
     commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
                           draw.alpha_test ? *alpha_cut_ : *opaque_);
-    commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout.pipeline, 0,
-                                {frame_set, scene.materialSet(draw.material)}, nullptr);
-    commands.pushConstants<shared::DrawUniforms>(
-        *layout.pipeline, vk::ShaderStageFlagBits::eFragment, 0, draw.uniforms);
-    commands.drawIndexed(draw.index_count, draw.instance_count, draw.first_index,
-                         draw.vertex_offset, draw.first_instance);
+    scene.record(commands, *layout.pipeline, frame_set, draw);
   }
 }
 

@@ -88,7 +88,7 @@ TEST(Cascades, OneIsTheFitOfTheWholeScene) {
 
 TEST(Cascades, EachHoldsThePictureUpToItsReach) {
   Random random(3);
-  int fading = 0;
+  int fading = 0, standing = 0;
   for (int trial = 0; trial < 200; ++trial) {
     CascadeRequest request = parkRequest(2 + trial % 3);
     request.camera.eye = {random.vary(250.0f), random.uniform(0.2f, 60.0f), random.vary(250.0f)};
@@ -104,9 +104,18 @@ TEST(Cascades, EachHoldsThePictureUpToItsReach) {
         EXPECT_EQ(
             shareOf(cascades[i], visiblePoint(request, cascades[i].reach_m, random), request.size),
             1.0f);
-      // Depths are the whole scene's: casters towards the sun are in all maps.
-      const glm::vec3 p = visiblePoint(request, 100.0f, random);
-      EXPECT_EQ(positionIn(cascades[i], p).z, positionIn(cascades.back(), p).z);
+      // Whatever stands in a map, however far towards the sun, has a depth there.
+      for (int k = 0; k < 100; ++k) {
+        const glm::vec3 share(random.uniform(), random.uniform(), random.uniform());
+        const glm::vec3 p = kPark.min + share * kPark.size();
+        const glm::vec3 at = positionIn(cascades[i], p);
+        if (glm::any(glm::lessThan(glm::vec2(at), glm::vec2(0.0f))) ||
+            glm::any(glm::greaterThan(glm::vec2(at), glm::vec2(1.0f))))
+          continue;
+        ++standing;
+        EXPECT_GE(at.z, 0.0f);
+        EXPECT_LE(at.z, 1.0f);
+      }
     }
     // Where a map fades, the next one is whole: two samples are enough.
     for (int k = 0; k < 500 && cascades.size() > 2; ++k) {
@@ -118,6 +127,24 @@ TEST(Cascades, EachHoldsThePictureUpToItsReach) {
     }
   }
   EXPECT_GT(fading, 500);
+  EXPECT_GT(standing, 3000);
+}
+
+TEST(Cascades, DepthsAreFineNearTheEye) {
+  // A park is wide and flat: under a high sun the part that a small map holds is not deep.
+  CascadeRequest request = parkRequest(4);
+  request.to_sun = directionOf(0.5f, 1.0f);
+  const std::vector<Cascade> cascades = fitCascades(request);
+  ASSERT_EQ(cascades.size(), 4u);
+  const auto metres = [](const Cascade& cascade) {
+    const glm::mat4& m = cascade.shadow_from_world;
+    return 1.0f / glm::length(glm::vec3(m[0].z, m[1].z, m[2].z));
+  };
+  EXPECT_LT(metres(cascades[0]), 0.2f * metres(cascades[3]));
+  // A column of the map's width through all of the park's height, and a step at either end.
+  const float side = cascades[0].texel_m * static_cast<float>(request.size);
+  const float column = kPark.size().y / std::sin(1.0f) + std::sqrt(2.0f) * side / std::tan(1.0f);
+  EXPECT_LE(metres(cascades[0]), column + 0.5f * side + 1e-3f);
 }
 
 /// How far a point's place within its texel moves, at most, while the camera moves and turns: for

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/check.h"
 #include "scene/camera.h"
@@ -44,7 +45,46 @@ float powerOfTwoBelow(float x) {
   return std::exp2(std::floor(std::log2(std::max(x, 1e-12f))));
 }
 
-/// A map of `side_m` metres around a point, with the depths of `whole`.
+/// Heights towards the sun of all of `bounds` whose (x, y) of the map lie in [0, 1]^2; first above
+/// second if there is nothing.
+std::pair<float, float> heightsInMap(const glm::mat4& shadow_from_world, const Bounds& bounds,
+                                     const glm::vec3& to_sun) {
+  std::pair<float, float> heights(std::numeric_limits<float>::max(),
+                                  std::numeric_limits<float>::lowest());
+  std::vector<glm::vec3> polygon, kept;
+  for (int face = 0; face < 6; ++face) {  // of the bounds, cut by the map's four sides
+    const int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+    polygon.clear();
+    for (int corner = 0; corner < 4; ++corner) {
+      glm::vec3 p(0.0f);
+      p[axis] = face % 2 == 0 ? bounds.min[axis] : bounds.max[axis];
+      p[u] = corner == 1 || corner == 2 ? bounds.max[u] : bounds.min[u];
+      p[v] = corner >= 2 ? bounds.max[v] : bounds.min[v];
+      polygon.push_back(p);
+    }
+    for (int side = 0; side < 4; ++side) {
+      const auto inside = [&](const glm::vec3& p) {
+        const float at = (shadow_from_world * glm::vec4(p, 1.0f))[side / 2];
+        return side % 2 == 0 ? at : 1.0f - at;
+      };
+      kept.clear();
+      for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const glm::vec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+        const float in_a = inside(a), in_b = inside(b);
+        if (in_a >= 0.0f) kept.push_back(a);
+        if ((in_a >= 0.0f) != (in_b >= 0.0f)) kept.push_back(glm::mix(a, b, in_a / (in_a - in_b)));
+      }
+      std::swap(polygon, kept);
+    }
+    for (const glm::vec3& p : polygon) {
+      heights.first = std::min(heights.first, glm::dot(p, to_sun));
+      heights.second = std::max(heights.second, glm::dot(p, to_sun));
+    }
+  }
+  return heights;
+}
+
+/// A map of `side_m` metres around a point, with the depths of what may stand in it.
 Cascade placeCascade(const ShadowFit& whole, const SunAxes& axes, const glm::vec3& center,
                      float side_m, const CascadeRequest& request) {
   Cascade cascade;
@@ -60,6 +100,13 @@ Cascade placeCascade(const ShadowFit& whole, const SunAxes& axes, const glm::vec
            static_cast<float>(0.5 - at / request.size));
     const double wraps = std::floor(at / shared::kCascadeWrap);
     cascade.origin[row++] = static_cast<int>(std::floor(at) - wraps * shared::kCascadeWrap);
+  }
+  const auto [low, high] = heightsInMap(cascade.shadow_from_world, request.bounds, axes.towards);
+  if (low < high) {  // by steps, so that depths seldom change when the camera moves
+    const float step = 0.25f * side_m;
+    const float top = (std::floor(high / step) + 1.0f) * step;
+    const float depth = top - (std::ceil(low / step) - 1.0f) * step;
+    setRow(cascade.shadow_from_world, 2, -axes.towards / depth, top / depth);
   }
   return cascade;
 }

@@ -50,8 +50,9 @@ struct CascadeRequest {
 /// uniform. `far` is the eye's distance from the farthest corner of the bounds, `near` that from
 /// the bounds, at least far / 1000; both rounded to powers of two, so that maps keep their scale
 /// while the camera moves. Of each part the smallest sphere around it counts: however the camera
-/// turns, its size stays. The map moves by whole texels, and its depths are the whole scene's, so
-/// that whatever stands towards the sun casts its shadow. A map that would not be a fifth finer
+/// turns, its size stays. The map moves by whole texels, and its depths hold all of the
+/// bounds that lies behind and in front of it, so that whatever stands towards the sun casts its
+/// shadow. A map that would not be a fifth finer
 /// than that of the whole scene is left out; maps under 64 texels, whose border would be most of
 /// them, too.
 ///

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <glm/gtc/matrix_access.hpp>
 
 #include "render/look.h"
 #include "scene/camera.h"
@@ -249,8 +248,7 @@ shared::FrameUniforms FrameDrawer::makeUniforms(const GpuScene& scene, const Vie
   const float haze = std::max(look::kHazeHalf * distance, look::kHazeHalfLeast_m);
   u.ground = glm::vec4(scene.groundHeight(), look::kGroundRadius * haze, haze, look::kGroundTile_m);
   u.ground_map = glm::vec4(ground_light_.place(), 0.0f);
-  u.leaf_tint = glm::vec4(scene.leafTint(),
-                          glm::length(glm::vec3(glm::row(cascades[0].shadow_from_world, 2))));
+  u.leaf_tint = glm::vec4(scene.leafTint(), 0.0f);
   if (view.daylight.sky != nullptr && view.daylight.sky->formula() != nullptr)
     u.sky = *view.daylight.sky->formula();
   return u;

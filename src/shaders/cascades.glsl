@@ -8,9 +8,15 @@ struct CascadeChoice {
   float share;  // of `fine` in what is seen, in (0, 1]
 };
 
-/// x, y in [0, 1] over the cascade's map; z = depth in all of them, over 1 behind all that is drawn.
+/// x, y in [0, 1] over the cascade's map; z = depth, over 1 behind all that is drawn there.
 vec3 cascadePosition(int cascade, vec3 world_position) {
   return (frame.shadow_from_world[cascade] * vec4(world_position, 1.0)).xyz;
+}
+
+/// Depth of one metre in a cascade's map.
+float depthOfMetre(int cascade) {
+  mat4 m = frame.shadow_from_world[cascade];
+  return length(vec3(m[0].z, m[1].z, m[2].z));
 }
 
 CascadeChoice chooseCascades(vec3 world_position) {

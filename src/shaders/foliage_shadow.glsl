@@ -13,7 +13,7 @@ vec3 throughLeaves(int cascade, vec4 texel, float z, vec4 leaf) {
   if (kShadowSource != kDepthOrdered)
     return throughLayers(layers, spreadDepth(layers, z), leaf.rgb, 1.0);
   // The point has been moved off its own surface: what is still in front of it is another's.
-  float two_texels = 2.0 * frame.cascade[cascade].x * frame.leaf_tint.w;
+  float two_texels = 2.0 * frame.cascade[cascade].x * depthOfMetre(cascade);
   float behind = clamp((z - layers.near) / two_texels, 0.0, 1.0);
   // Transfer vectors know what shines through leaves, and where it goes: they hide the sun itself.
   if (kAmbientSource == kTransfer && (kFoliage || frame.ground_map.z > 0.0))

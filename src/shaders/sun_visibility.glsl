@@ -55,7 +55,7 @@ float blockerDistance(ShadowLookup from) {
   vec2 blocker = textureLod(blocker_map, vec3(from.at.xy / (frame.sun_light.w * size),
                                               float(from.cascade)), 0.0).xy;
   if (blocker.y <= 0.0) return 0.0;
-  return max(from.z - blocker.x / blocker.y, 0.0) / frame.leaf_tint.w;
+  return max(from.z - blocker.x / blocker.y, 0.0) / depthOfMetre(from.cascade);
 }
 
 /// What wood leaves open and leaves let through. The texels of leaves are filtered first, as their

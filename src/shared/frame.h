@@ -27,7 +27,7 @@ struct FrameUniforms {
   vec4 ray_down;    ///< w = 2 / height, pixels
   vec4 ray_forward;
   vec4 open_light[9];  ///< shIrradiance() / pi by the open sky and the open ground
-  vec4 leaf_tint;      ///< leafTint() of the scene's foliage, mean; w = depth of the maps per metre
+  vec4 leaf_tint;      ///< leafTint() of the scene's foliage, mean
   SkyFormula sky;      ///< kcd/m^2, where the sky has one
 };
 SHARED_SIZE(FrameUniforms, 832);

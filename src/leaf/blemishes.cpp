@@ -88,9 +88,9 @@ Blemishes blemish(const GrownLeaf& leaf, const BladeFields& fields, const LeafSp
       if (hole < 3) brown = std::max(brown, 0.9f * std::exp(-std::max(hole, 0.0f) / 0.35f));
       // The margin dries, teeth first.
       const float depth = fields.edge[i] / fields.edge_reach;
-      const float onset = 0.66f + (0.9f * depth - 1.0f * slow - 0.25f * rough) /
+      const float onset = 0.80f + (1.5f * depth - 1.0f * slow - 0.25f * rough) /
                                       std::max(species.edge_browning, 0.05f) * 0.55f;
-      brown = std::max(brown, glm::smoothstep(0.0f, 0.16f, options.age - std::max(onset, 0.42f)));
+      brown = std::max(brown, glm::smoothstep(0.0f, 0.24f, options.age - std::max(onset, 0.42f)));
       // A blotch where the slow noise is high, late.
       brown = std::max(
           brown,

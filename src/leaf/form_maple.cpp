@@ -8,8 +8,8 @@ namespace {
 struct Finger {
   float angle_deg, length;  ///< from the middle finger; by its length
 };
-const Finger kFingers[] = {{0, 1.0f}, {39, 0.94f}, {79, 0.74f}, {124, 0.42f}};
-constexpr float kSinus = 0.30f;  ///< where fingers part, by the shorter neighbour's length
+const Finger kFingers[] = {{0, 1.0f}, {37, 0.95f}, {77, 0.78f}, {122, 0.45f}};
+constexpr float kSinus = 0.33f;  ///< where fingers part, by the shorter neighbour's length
 constexpr int kSide = 3;         ///< fingers on each side of the middle one
 
 glm::vec2 polar(float angle_deg, float radius) {
@@ -67,10 +67,10 @@ LeafForm makeMaple(std::uint64_t seed) {
     shape.angle_tip_deg = 34;
     shape.bend = 0.05f;
     shape.into_teeth = true;
-    shape.tooth_mm = 0.030f * length;
-    shape.minor_mm = 0.014f * length;
+    shape.tooth_mm = 0.024f * length;
+    shape.minor_mm = 0.012f * length;
     shape.pitch_mm = 0.028f * length;
-    shape.teeth_from = lowest ? 0.25f : 0.42f;
+    shape.teeth_from = lowest ? 0.25f : 0.46f;
     shape.teeth_to = 0.97f;
     shape.saw = {{}, {}, 0.22f, 0.9f, 1.15f};
     shape.vary = 0.05f;
@@ -80,9 +80,9 @@ LeafForm makeMaple(std::uint64_t seed) {
       if (lowest && outer)
         shape.margin.push_back({{0.150f, 0.20f}});
       else
-        shape.margin.push_back({{std::max(bay.x + 0.012f, 0.098f), bay.y + 0.10f}});
-      for (const glm::vec2& p : {glm::vec2(0.136f, 0.50f), glm::vec2(0.118f, 0.64f),
-                                 glm::vec2(0.072f, 0.79f), glm::vec2(0.026f, 0.91f)})
+        shape.margin.push_back({{std::max(bay.x + 0.006f, 0.088f), bay.y + 0.09f}});
+      for (const glm::vec2& p : {glm::vec2(0.122f, 0.48f), glm::vec2(0.108f, 0.61f),
+                                 glm::vec2(0.060f, 0.77f), glm::vec2(0.019f, 0.905f)})
         shape.margin.push_back({{slim * p.x, p.y}});
       shape.margin.push_back({{0, 1}});
       return makeHalfBlade(shape, outer ? 0.0f : 1.0f, random);

@@ -15,10 +15,10 @@ struct Lobe {
 };
 
 const Lobe kLobes[] = {
-    {0.035f, {0.235f, 0.125f}, 0.0f, 0.16f, {0.125f, 0.185f}},
+    {0.03f, {0.245f, 0.130f}, 0.0f, 0.0f, {0.120f, 0.175f}},
     {0.15f, {0.405f, 0.350f}, 0.21f, 0.23f, {0.135f, 0.405f}},
     {0.37f, {0.430f, 0.630f}, 0.22f, 0.22f, {0.120f, 0.655f}},
-    {0.61f, {0.290f, 0.860f}, 0.20f, 0.20f, {0.075f, 0.835f}},
+    {0.61f, {0.285f, 0.850f}, 0.20f, 0.19f, {0.072f, 0.850f}},
 };
 
 /// A pointed tooth that ends in a bristle.
@@ -65,17 +65,18 @@ Half makeHalf(float length, float stalk_radius, Random& random) {
     }
     addTooth(points, tip, along, length);
     points.push_back({local(0.82f, 0.095f * broad)});
-    const glm::vec2 tooth = local(0.76f, form.upper * broad);
-    addTooth(points, tooth, glm::normalize(0.8f * along + 0.6f * up), length);
-    points.push_back({local(0.60f, 0.125f * broad)});
-    teeth.push_back(tooth);
+    if (form.upper > 0) {
+      const glm::vec2 tooth = local(0.76f, form.upper * broad);
+      addTooth(points, tooth, glm::normalize(0.8f * along + 0.6f * up), length);
+      teeth.push_back(tooth);
+    }
+    points.push_back({local(0.58f, 0.125f * broad)});
     // A round bay.
     glm::vec2 sinus = form.sinus;
     sinus.x *= 1 + random.vary(0.12f);
     sinus.y += random.vary(0.008f);
-    points.push_back({sinus + glm::vec2(0.034f, -0.020f)});
-    points.push_back({sinus});
-    points.push_back({sinus + glm::vec2(0.030f, 0.030f)});
+    points.push_back({sinus + glm::vec2(0.012f, -0.022f)});
+    points.push_back({sinus + glm::vec2(0.010f, 0.018f)});
 
     const auto vein = [&](const glm::vec2& from, const glm::vec2& to, float bow) {
       const glm::vec2 chord = to - from;
@@ -94,7 +95,6 @@ Half makeHalf(float length, float stalk_radius, Random& random) {
   }
   // The last lobe, shared by both halves.
   const glm::vec2 tooth(0.115f + random.vary(0.01f), 0.925f + random.vary(0.012f));
-  points.push_back({{0.085f, 0.88f}});
   addTooth(points, tooth, glm::normalize(glm::vec2(0.75f, 0.65f)), length);
   points.push_back({{0.045f, 0.945f}});
   points.push_back({{0.16f / length, 1.0f}, true});

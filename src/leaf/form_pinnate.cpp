@@ -104,7 +104,7 @@ HalfBlade makeHalfBlade(const BladeShape& shape, float side, Random& random) {
     const float bow = shape.bend * random.uniform(0.75f, 1.25f);
     if (shape.into_teeth) {
       half.secondaries.push_back(
-          wiggled(bowed(start, toothedPoint(curve, saws, root.u), bow), 0.008f, random));
+          wiggled(bowed(start, toothedPoint(curve, saws, root.u), bow), 0.004f, random));
       continue;
     }
     // Loops: on along the margin, ever farther from it, to the next vein.

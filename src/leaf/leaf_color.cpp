@@ -20,7 +20,7 @@ void paintLeaf(const BladeFields& fields, const Blemishes& blemishes, const Leaf
   Random random(hash(options.seed ^ 0x636f6c6f72ull));
   // Leaves of a tree differ in how dark they are and in when they turn.
   const float dark = random.uniform(0.93f, 1.07f), late = random.vary(0.03f);
-  std::vector<float> glow = fields.ridge;  // along veins the tissue is paler
+  std::vector<float> glow = fields.ridge.height;  // along veins the tissue is paler
   blur(glow, frame.size, 0.35f / frame.mmPerTexel());
 
   for (LeafSide* side : {&set.front, &set.back}) {
@@ -49,18 +49,22 @@ void paintLeaf(const BladeFields& fields, const Blemishes& blemishes, const Leaf
       const float turned = glm::smoothstep(0.0f, 0.30f, options.age - onset);
       Pigments pigments = mix(species.summer, species.spring, spring);
       pigments = mix(pigments, species.autumn, turned);
-      pigments.chlorophyll *= dark * (1 + 0.30f * slow + 0.16f * spotty + 0.22f * fine) *
+      pigments.chlorophyll *= dark * (1 + 0.30f * slow + 0.14f * spotty + 0.12f * fine) *
                               (0.90f + 0.12f * field + 0.10f * (cell.value - 0.5f));
       pigments.anthocyanin *= 1 + 0.7f * slow + 0.3f * spotty + 0.15f * fine;
       pigments.carotenoid *= 1 + 0.2f * slow;
 
       // Veins have little of all pigments.
-      const float vein = 1 - std::exp(-fields.ridge[i] / 0.055f);
+      const float vein = fields.ridge.tone[i];
       const float halo = 1 - std::exp(-glow[i] / 0.12f);
       const float lack = species.vein_contrast * std::max(vein, 0.38f * halo) * blade;
+      const Pigments full = pigments;
       pigments.chlorophyll *= 1 - lack;
       pigments.anthocyanin *= 1 - 0.7f * lack;
-      pigments = mix(species.stalk, pigments, blade);
+      // The midrib's foot still has the stalk's colours.
+      const float thick =
+          glm::smoothstep(0.35f, 0.85f, fields.ridge.height[i] / fields.stalk_radius);
+      pigments = mix(pigments, species.stalk, std::max(1 - blade, 0.7f * thick));
       const float wood = vein * blade * (0.10f + 0.35f * turned);
       pigments.tannin += 0.25f * wood;
 
@@ -76,9 +80,11 @@ void paintLeaf(const BladeFields& fields, const Blemishes& blemishes, const Leaf
       back = glm::mix(back, glm::vec3(glm::dot(back, glm::vec3(0.3f, 0.6f, 0.1f))), 0.14f);
       // At the back veins stand out pale.
       back *= 1 + 0.18f * vein * blade;
-      glm::vec3 through = transmitted(depth, 0.70f);
-      // Against the light veins are thick and dark.
-      const float shade = 1 - (0.62f * vein + 0.10f * halo) * blade - 0.5f * fields.stalk[i];
+      // Against the light veins are thick and dark, down to the finest.
+      glm::vec3 through =
+          transmitted(glm::mix(absorbance(full), depth, std::max(1 - blade, brown)), 1);
+      const float thread = vein * (2 - vein);
+      const float shade = 1 - (0.60f * thread + 0.08f * halo) * blade - 0.45f * fields.stalk[i];
       const glm::vec3 wooden(1.0f, 0.93f, 0.75f);
       through *= shade * glm::mix(glm::vec3(1), wooden, vein);
       through *= 1 - 0.45f * brown;

@@ -27,20 +27,32 @@ BladeFields rasterise(const GrownLeaf& leaf, const LeafSpecies& species, int siz
     // A branch is as thin at its fork as behind it.
     const bool fork = parent.tips > node.tips && parent.order != node.order;
     Stroke stroke{parent.position, node.position, fork ? node.radius : parent.radius, node.radius};
-    if (node.position.y <= leaf.form.blade_base + 1e-3f && node.order == 1) {
-      stroke.radius_a = stalkRadius(leaf.form, stroke.a.y);
-      stroke.radius_b = stalkRadius(leaf.form, stroke.b.y);
-      stalk.push_back(stroke);
+    if (node.midrib && node.position.y <= leaf.form.blade_base + 1e-3f) {
+      // The stalk narrows to the midrib.
+      const auto radius = [&](float y) {
+        const float base = leaf.form.blade_base, thick = stalkRadius(leaf.form, y);
+        return glm::mix(thick, node.radius,
+                        glm::smoothstep(base - 8 * leaf.form.stalk_radius, base, y));
+      };
+      stroke.radius_a = radius(stroke.a.y);
+      stroke.radius_b = radius(stroke.b.y);
     }
+    if (node.position.y < leaf.form.blade_base + 4 * leaf.form.stalk_radius && node.midrib)
+      stalk.push_back(stroke);
     all.push_back(stroke);
     if (node.order <= 2) major.push_back(stroke);
   }
   fields.ridge = ridgesOf(all, frame);
   fields.vein = distanceTo(all, 1.2f * species.veins.spacing_mm, frame);
   fields.major = distanceTo(major, 2.2f * species.quilt_reach_mm, frame);
-  const float radius = leaf.form.stalk_radius;
+  const float radius = fields.stalk_radius = leaf.form.stalk_radius;
   fields.stalk = distanceTo(stalk, 3 * radius, frame);
-  for (float& d : fields.stalk) d = 1 - glm::smoothstep(1.25f * radius, 2.2f * radius, d);
+  for (std::size_t i = 0; i < fields.stalk.size(); ++i) {
+    const auto row = static_cast<float>(i / static_cast<std::size_t>(size)) + 0.5f;
+    const float y = frame.toMm({0, row}).y - leaf.form.blade_base;
+    fields.stalk[i] = (1 - glm::smoothstep(1.25f * radius, 2.2f * radius, fields.stalk[i])) *
+                      (1 - glm::smoothstep(-3 * radius, 3 * radius, y));
+  }
   return fields;
 }
 

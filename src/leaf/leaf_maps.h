@@ -21,11 +21,12 @@ struct BladeFields {
   LeafFrame frame;
   std::vector<float> coverage;  ///< by the outline, [0, 1]
   std::vector<float> edge;      ///< mm to the outline, positive inside, at most edge_reach
-  std::vector<float> ridge;     ///< mm: height of the veins as half cylinders
+  Ridges ridge;                 ///< veins
   std::vector<float> vein;      ///< mm to the nearest vein
   std::vector<float> major;     ///< mm to the nearest primary or secondary vein
   std::vector<float> stalk;     ///< 1 on the stalk, 0 on the blade
   float edge_reach = 0;
+  float stalk_radius = 0;  ///< mm
 };
 BladeFields rasterise(const GrownLeaf& leaf, const LeafSpecies& species, int size);
 

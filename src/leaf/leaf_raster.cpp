@@ -139,23 +139,27 @@ std::vector<float> distanceTo(std::span<const Stroke> strokes, float reach_mm,
   return distance;
 }
 
-std::vector<float> ridgesOf(std::span<const Stroke> strokes, const LeafFrame& frame) {
+Ridges ridgesOf(std::span<const Stroke> strokes, const LeafFrame& frame) {
   const Tiles tiles = tilesOf(strokes, 1.0f, frame);
   const auto side = static_cast<std::size_t>(frame.size);
-  std::vector<float> ridges(side * side);
+  Ridges ridges{std::vector<float>(side * side), std::vector<float>(side * side)};
   constexpr float kThinnest = 0.75f;  // texels
+  const float strong = 0.07f / frame.mmPerTexel();
   forTexels(tiles, frame.size, [&](int x, int y, const std::vector<Stroke>& list) {
     const glm::vec2 p(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-    float best = 0, t;
+    float height = 0, tone = 0, t;
     for (const Stroke& s : list) {
       const float d2 = squaredDistance(p, s, t);
       const float radius = glm::mix(s.radius_a, s.radius_b, t);
       const float wide = std::max(radius, kThinnest);
       if (d2 >= wide * wide) continue;
       // Half a cylinder; (radius / wide)^2 keeps the cross-section's area.
-      best = std::max(best, std::sqrt(wide * wide - d2) * (radius / wide) * (radius / wide));
+      const float share = radius / wide, off = 1 - d2 / (wide * wide);
+      height = std::max(height, std::sqrt(off) * radius * share);
+      tone = std::max(tone, share * (1 - std::exp(-radius / strong)) * std::min(1.8f * off, 1.0f));
     }
-    ridges[indexOf(x, y, frame.size)] = best * frame.mmPerTexel();
+    ridges.height[indexOf(x, y, frame.size)] = height * frame.mmPerTexel();
+    ridges.tone[indexOf(x, y, frame.size)] = tone;
   });
   return ridges;
 }

@@ -44,9 +44,14 @@ struct Stroke {
 std::vector<float> distanceTo(std::span<const Stroke> strokes, float reach_mm,
                               const LeafFrame& frame);
 
-/// At each texel's centre: height of the highest stroke, each half a cylinder of its radius, mm.
-/// Strokes thinner than a texel become as wide as one and lose as much height.
-std::vector<float> ridgesOf(std::span<const Stroke> strokes, const LeafFrame& frame);
+struct Ridges {
+  std::vector<float> height;  ///< mm: strokes as half cylinders
+  std::vector<float> tone;    ///< [0, 1]: strokes as lines, the fainter the thinner
+};
+
+/// The highest and the strongest stroke at each texel's centre. Strokes thinner than a texel become
+/// as wide as one and lose as much height and tone.
+Ridges ridgesOf(std::span<const Stroke> strokes, const LeafFrame& frame);
 
 /// Distance to the outline, positive inside, within [-reach, reach], at texel centres.
 std::vector<float> signedDistance(const Polyline& outline, float reach_mm, const LeafFrame& frame);

@@ -35,7 +35,7 @@ void shapeRelief(const BladeFields& fields, const LeafSpecies& species, std::uin
   const auto own = static_cast<std::uint32_t>(hash(seed + 80));
 
   // The blade bulges between its veins, which hold it back.
-  std::vector<float> middle(n * n), groove = fields.ridge;
+  std::vector<float> middle(n * n), groove = fields.ridge.height;
   blur(groove, frame.size, std::max(0.16f / mm, 0.6f));
   const auto bulge = [](float d, float reach) { return 1 - std::exp(-d * d / (reach * reach)); };
   parallelFor(n, 4, [&](std::size_t row) {
@@ -49,8 +49,8 @@ void shapeRelief(const BladeFields& fields, const LeafSpecies& species, std::uin
       h += species.wave_mm * (fractalNoise(u, v, waves, waves, 2, own) - 0.5f);
       if (fields.edge[i] > -4 * mm) {
         const Cell cell = cellNoise(u, v, areoles, areoles, own + 5);
-        h += 0.3f * species.pillow_mm * glm::smoothstep(0.0f, 0.5f, cell.border);
-        h += 0.006f * (valueNoise(u, v, grain, grain, own + 9) - 0.5f);
+        h += 0.2f * species.pillow_mm * glm::smoothstep(0.0f, 0.5f, cell.border);
+        h += 0.004f * (valueNoise(u, v, grain, grain, own + 9) - 0.5f);
       }
       middle[i] = blade * h;
     }
@@ -66,8 +66,8 @@ void shapeRelief(const BladeFields& fields, const LeafSpecies& species, std::uin
       const float rim = glm::smoothstep(0.0f, 0.5f, fields.edge[i]);
       const float sheet = species.thickness_mm * (0.6f + 0.4f * rim);
       const float front_vein =
-          0.85f * (1 - blade) * fields.ridge[i] - blade * species.groove * groove[i];
-      const float back_vein = glm::mix(0.85f, species.protrusion, blade) * fields.ridge[i] +
+          0.85f * (1 - blade) * fields.ridge.height[i] - blade * species.groove * groove[i];
+      const float back_vein = glm::mix(0.85f, species.protrusion, blade) * fields.ridge.height[i] +
                               blade * species.groove * groove[i];
       set.front.relief_mm[i] = 0.5f * sheet + middle[i] + front_vein;
       set.back.relief_mm[i] = 0.5f * sheet - middle[i] + back_vein;

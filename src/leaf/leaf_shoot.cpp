@@ -72,7 +72,7 @@ std::vector<Rod> makeRods(std::uint32_t seed) {
       for (int i = 0; i <= steps; ++i) {
         const float u = static_cast<float>(i) / static_cast<float>(steps);
         needle.points.push_back(p);
-        const float tip = std::sqrt(std::clamp((1 - u) / 0.10f, 0.0f, 1.0f));
+        const float tip = std::sqrt(std::clamp((1 - u) / 0.16f, 0.0f, 1.0f));
         needle.radii.push_back(
             std::max(radius * (0.82f + 0.18f * std::min(u / 0.1f, 1.0f)) * tip, 0.06f));
         const float now = a + curve * u * u - 0.10f * u;
@@ -145,7 +145,7 @@ Paint paintRod(const Rod& rod, const Place& place, const LeafSpecies& species, f
   const glm::vec3 depth = absorbance(pigments);
   Paint paint{reflected(depth, 1.0f, 0.02f),
               reflected(depth, species.back_path, 0.02f) + species.back_bloom,
-              transmitted(depth, 1.1f)};
+              transmitted(depth, 1.15f)};
   const float wax = rod.part == Part::kNeedle ? 1 - sheath : 0.0f;
   paint.front += wax * glm::vec3(0.006f, 0.010f, 0.016f);  // bluish
   paint.back += wax * glm::vec3(0.006f, 0.010f, 0.016f);

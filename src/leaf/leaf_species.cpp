@@ -34,7 +34,7 @@ LeafSpecies quakingAspen() {
   LeafSpecies s;
   s.info = {"quaking-aspen", "Quaking aspen (Populus tremuloides)"};
   s.form = [form](std::uint64_t seed) { return makePinnate(form, seed); };
-  s.veins = {0.22f, 0.75f, 8, 0.22f, 2.7f};
+  s.veins = {0.16f, 0.5f, 6, 0.2f, 2.6f};
   s.thickness_mm = 0.20f;
   s.quilt_mm = 0.28f;
   s.quilt_reach_mm = 2.4f;
@@ -42,8 +42,8 @@ LeafSpecies quakingAspen() {
   s.summer = {0.96f, 0.42f, 0, 0};
   s.autumn = {0.02f, 0.95f, 0.06f, 0};
   s.stalk = {0.30f, 0.35f, 0.08f, 0.05f};
-  s.back_path = 0.60f;
-  s.back_bloom = 0.045f;
+  s.back_path = 0.76f;
+  s.back_bloom = 0.035f;
   s.roughness = 0.28f;
   return s;
 }
@@ -68,7 +68,7 @@ LeafSpecies blackTupelo() {
   LeafSpecies s;
   s.info = {"black-tupelo", "Black tupelo (Nyssa sylvatica)"};
   s.form = [form](std::uint64_t seed) { return makePinnate(form, seed); };
-  s.veins = {0.28f, 1.0f, 9, 0.25f, 2.7f};
+  s.veins = {0.22f, 0.65f, 7, 0.25f, 2.6f};
   s.thickness_mm = 0.28f;
   s.quilt_mm = 0.35f;
   s.quilt_reach_mm = 3.0f;
@@ -77,7 +77,8 @@ LeafSpecies blackTupelo() {
   s.summer = {1.08f, 0.42f, 0, 0};
   s.autumn = {0.03f, 0.75f, 1.05f, 0};
   s.stalk = {0.30f, 0.35f, 0.35f, 0.05f};
-  s.back_path = 0.66f;
+  s.back_path = 0.82f;
+  s.back_bloom = 0.02f;
   s.roughness = 0.18f;
   return s;
 }
@@ -89,9 +90,9 @@ LeafSpecies weepingWillow() {
   form.bend = 0.07f;
   BladeShape& blade = form.blade;
   blade.length_mm = 112;
-  blade.margin = {{{0, 0}},          {{0.022f, 0.03f}}, {{0.050f, 0.13f}},
-                  {{0.066f, 0.30f}}, {{0.062f, 0.46f}}, {{0.048f, 0.63f}},
-                  {{0.030f, 0.79f}}, {{0.012f, 0.92f}}, {{0, 1}}};
+  blade.margin = {{{0, 0}},          {{0.020f, 0.03f}},  {{0.046f, 0.13f}},
+                  {{0.060f, 0.29f}}, {{0.056f, 0.45f}},  {{0.042f, 0.62f}},
+                  {{0.024f, 0.79f}}, {{0.0085f, 0.92f}}, {{0, 1}}};
   blade.pairs = 22;
   blade.first = 0.04f;
   blade.last = 0.92f;
@@ -107,7 +108,7 @@ LeafSpecies weepingWillow() {
   LeafSpecies s;
   s.info = {"weeping-willow", "Weeping willow (Salix babylonica)"};
   s.form = [form](std::uint64_t seed) { return makePinnate(form, seed); };
-  s.veins = {0.18f, 0.7f, 3, 0.18f, 2.8f};
+  s.veins = {0.14f, 0.45f, 2.5f, 0.15f, 2.7f};
   s.thickness_mm = 0.20f;
   s.quilt_mm = 0.12f;
   s.quilt_reach_mm = 1.2f;
@@ -115,8 +116,8 @@ LeafSpecies weepingWillow() {
   s.summer = {0.90f, 0.42f, 0, 0};
   s.autumn = {0.08f, 0.90f, 0, 0.04f};
   s.stalk = {0.25f, 0.45f, 0.05f, 0.02f};
-  s.back_path = 0.48f;
-  s.back_bloom = 0.10f;
+  s.back_path = 0.68f;
+  s.back_bloom = 0.075f;
   s.roughness = 0.26f;
   return s;
 }
@@ -125,7 +126,7 @@ LeafSpecies blackOak() {
   LeafSpecies s;
   s.info = {"black-oak", "California black oak (Quercus kelloggii)"};
   s.form = makeOak;
-  s.veins = {0.30f, 1.05f, 10, 0.25f, 2.7f};
+  s.veins = {0.24f, 0.7f, 8, 0.25f, 2.6f};
   s.thickness_mm = 0.26f;
   s.quilt_mm = 0.35f;
   s.quilt_reach_mm = 3.2f;
@@ -134,8 +135,8 @@ LeafSpecies blackOak() {
   s.summer = {1.02f, 0.45f, 0, 0};
   s.autumn = {0.02f, 0.95f, 0.22f, 0.28f};
   s.stalk = {0.28f, 0.50f, 0.12f, 0.10f};
-  s.back_path = 0.64f;
-  s.back_bloom = 0.035f;
+  s.back_path = 0.80f;
+  s.back_bloom = 0.025f;
   s.roughness = 0.20f;
   s.edge_browning = 1.3f;
   return s;
@@ -145,16 +146,16 @@ LeafSpecies japaneseMaple() {
   LeafSpecies s;
   s.info = {"japanese-maple", "Japanese maple (Acer palmatum)"};
   s.form = makeMaple;
-  s.veins = {0.22f, 0.8f, 6, 0.18f, 2.7f};
+  s.veins = {0.17f, 0.5f, 5, 0.18f, 2.6f};
   s.thickness_mm = 0.16f;
   s.quilt_mm = 0.18f;
   s.quilt_reach_mm = 1.8f;
   // A red-leaved form, as the tree.
   s.spring = {0.16f, 0.35f, 0.95f, 0};
-  s.summer = {0.42f, 0.40f, 1.00f, 0};
+  s.summer = {0.44f, 0.16f, 1.00f, 0};
   s.autumn = {0.0f, 0.75f, 0.90f, 0};
-  s.stalk = {0.12f, 0.35f, 0.85f, 0.05f};
-  s.back_path = 0.72f;
+  s.stalk = {0.22f, 0.25f, 0.95f, 0.12f};
+  s.back_path = 0.84f;
   s.back_bloom = 0.02f;
   s.vein_contrast = 0.55f;
   s.roughness = 0.34f;
@@ -182,9 +183,9 @@ LeafSpecies silverBirch() {
   form.bend = 0.03f;
   BladeShape& blade = form.blade;
   blade.length_mm = 52;
-  blade.margin = {{{0, 0}},           {{0.13f, 0.018f}}, {{0.29f, 0.12f}},
-                  {{0.365f, 0.255f}}, {{0.335f, 0.40f}}, {{0.235f, 0.57f}},
-                  {{0.125f, 0.74f}},  {{0.045f, 0.89f}}, {{0, 1}}};
+  blade.margin = {{{0, 0}},          {{0.13f, 0.008f}},  {{0.305f, 0.105f}},
+                  {{0.37f, 0.225f}}, {{0.335f, 0.37f}},  {{0.225f, 0.55f}},
+                  {{0.115f, 0.73f}}, {{0.045f, 0.875f}}, {{0, 1}}};
   blade.pairs = 7;
   blade.first = 0.035f;
   blade.last = 0.74f;
@@ -197,11 +198,11 @@ LeafSpecies silverBirch() {
   blade.pitch_mm = 1.75f;
   blade.teeth_from = 0.12f;
   blade.teeth_to = 0.985f;
-  blade.saw = {{}, {}, 0.24f, 0.75f, 1.1f};
+  blade.saw = {{}, {}, 0.15f, 0.5f, 1.1f};
   LeafSpecies s;
   s.info = {"silver-birch", "Silver birch (Betula pendula)"};
   s.form = [form](std::uint64_t seed) { return makePinnate(form, seed); };
-  s.veins = {0.22f, 0.75f, 6, 0.2f, 2.7f};
+  s.veins = {0.16f, 0.48f, 5, 0.18f, 2.6f};
   s.thickness_mm = 0.18f;
   s.quilt_mm = 0.32f;
   s.quilt_reach_mm = 2.0f;
@@ -209,7 +210,8 @@ LeafSpecies silverBirch() {
   s.summer = {0.97f, 0.44f, 0, 0};
   s.autumn = {0.02f, 1.0f, 0.02f, 0.03f};
   s.stalk = {0.32f, 0.40f, 0.12f, 0.08f};
-  s.back_path = 0.64f;
+  s.back_path = 0.80f;
+  s.back_bloom = 0.022f;
   s.roughness = 0.30f;
   return s;
 }
@@ -234,7 +236,7 @@ LeafSpecies hedge() {
   LeafSpecies s;
   s.info = {"hedge", "Hedge privet (Ligustrum)"};
   s.form = [form](std::uint64_t seed) { return makePinnate(form, seed); };
-  s.veins = {0.18f, 0.8f, 6, 0.2f, 2.5f};
+  s.veins = {0.16f, 0.6f, 5, 0.2f, 2.5f};
   s.thickness_mm = 0.36f;
   s.protrusion = 0.5f;
   s.groove = 0.5f;
@@ -245,8 +247,9 @@ LeafSpecies hedge() {
   s.summer = {1.10f, 0.42f, 0, 0};
   s.autumn = {0.40f, 0.80f, 0.25f, 0};
   s.stalk = {0.45f, 0.40f, 0.05f, 0.02f};
-  s.back_path = 0.58f;
-  s.vein_contrast = 0.6f;
+  s.back_path = 0.74f;
+  s.back_bloom = 0.02f;
+  s.vein_contrast = 0.38f;
   s.edge_browning = 0.5f;
   s.roughness = 0.14f;
   return s;

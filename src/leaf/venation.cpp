@@ -6,6 +6,8 @@
 namespace verdure {
 namespace {
 
+constexpr float kMidribShare = 0.75f;  ///< radius of the midrib's foot, by the stalk's
+
 /// Points by number in square cells.
 class PointGrid {
  public:
@@ -99,7 +101,9 @@ class Growth {
       last = spacing <= options_.spacing_mm * 1.2f;
       if (last) spacing = options_.spacing_mm;
       placeSources(spacing);
+      const std::size_t before = nodes_.size();
       grow(std::max(kKillShare * spacing, 1.05f * options_.step_mm));
+      closeEnds(before, 1.25f * spacing);
     }
     return std::move(nodes_);
   }
@@ -107,7 +111,7 @@ class Growth {
  private:
   int add(const glm::vec2& p, int parent, int order, int guide) {
     const int id = static_cast<int>(nodes_.size());
-    nodes_.push_back({p, parent, order});
+    nodes_.push_back({p, parent, order, guide == 0});
     guide_of_.push_back(guide);
     grid_.add(p, id);
     return id;
@@ -145,12 +149,14 @@ class Growth {
         }
         if (parent < 0) continue;
       }
+      // It begins on a node, and is bent to do so.
+      const glm::vec2 snap = node(parent).position - guide.points.front();
       const int steps = static_cast<int>(std::ceil(curve.length() / options_.step_mm));
       for (int k = 1; k <= steps; ++k) {
-        const glm::vec2 p =
-            curve.at(curve.length() * static_cast<float>(k) / static_cast<float>(steps));
+        const float f = static_cast<float>(k) / static_cast<float>(steps);
+        const glm::vec2 p = curve.at(curve.length() * f) + (1 - f) * (1 - f) * snap;
         const bool blade = p.y > form_.blade_base + 1.0f;
-        if (blade && depth_(p) < options_.clearance_mm) break;
+        if (blade && depth_(p) < 0.4f * options_.clearance_mm) break;
         if (guide.order > 1 && crowded(p, 1.3f * options_.step_mm, self, guide.parent)) break;
         parent = add(p, parent, guide.order, self);
       }
@@ -260,7 +266,9 @@ class Growth {
           if (s.distance < source(nearest).distance) nearest = pulls[i].source;
         }
         // Where the mean leads nowhere new, straight to the nearest source.
-        if (!step(from, sum) && !step(from, source(nearest).position - node(from).position))
+        const glm::vec2 aside(-sum.y, sum.x);
+        if (!step(from, sum + random_.vary(0.35f) * aside) &&
+            !step(from, source(nearest).position - node(from).position))
           stuck.push_back(nearest);
       }
       for (std::size_t id = before; id < nodes_.size(); ++id) {
@@ -281,6 +289,50 @@ class Growth {
     }
   }
 
+  /// Runs the ends of veins that have grown since node `first` straight into the vein that lies
+  /// ahead, if one does: fields between veins look closed, while the venation stays a tree.
+  void closeEnds(std::size_t first, float reach) {
+    const std::size_t grown = nodes_.size();
+    std::vector<char> inner(grown, 0);
+    for (const VeinNode& n : nodes_)
+      if (n.parent >= 0) inner[static_cast<std::size_t>(n.parent)] = 1;
+    for (std::size_t id = first; id < grown; ++id) {
+      if (inner[id]) continue;
+      std::vector<int> own;  // where it came from does not count
+      glm::vec2 root = nodes_[id].position;
+      for (int a = static_cast<int>(id); a >= 0 && own.size() < 64; a = node(a).parent) {
+        own.push_back(a);
+        if (own.size() <= 4) root = node(a).position;
+      }
+      const glm::vec2 tip = nodes_[id].position, ahead = tip - root;
+      if (glm::dot(ahead, ahead) <= 0) continue;
+      const glm::vec2 heading = glm::normalize(ahead);
+      int target = -1;
+      float best = 1e30f;
+      grid_.near(tip, reach, [&](int other) {
+        const glm::vec2 d = node(other).position - tip;
+        const float length = glm::length(d);
+        if (length <= 0 || length > reach) return;
+        const float turn = 1 - glm::dot(d, heading) / length;
+        if (turn > 0.7f || length * (1 + turn) >= best) return;
+        if (std::find(own.begin(), own.end(), other) != own.end()) return;
+        best = length * (1 + turn);
+        target = other;
+      });
+      if (target < 0) continue;
+      const glm::vec2 end = node(target).position;
+      if (!depth_.open(tip, end, 0.8f * options_.clearance_mm)) continue;
+      const float length = glm::length(end - tip);
+      const int steps = std::max(1, static_cast<int>(std::ceil(length / options_.step_mm)));
+      int parent = static_cast<int>(id);
+      for (int k = 1; k <= steps; ++k) {
+        const float f = k < steps ? static_cast<float>(k) / static_cast<float>(steps)
+                                  : 1 - 0.05f * options_.step_mm / length;
+        parent = add(glm::mix(tip, end, f), parent, 3, -1);
+      }
+    }
+  }
+
   const LeafForm& form_;
   const VenationOptions& options_;
   Random random_;
@@ -296,7 +348,7 @@ class Growth {
 std::vector<VeinNode> growVenation(const LeafForm& form, const VenationOptions& options,
                                    std::uint64_t seed) {
   std::vector<VeinNode> nodes = Growth(form, options, seed).run();
-  setVeinWidths(nodes, form.stalk_radius, options.exponent);
+  setVeinWidths(nodes, kMidribShare * form.stalk_radius, options.exponent);
   return nodes;
 }
 

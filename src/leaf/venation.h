@@ -14,9 +14,10 @@ namespace verdure {
 struct VeinNode {
   glm::vec2 position;  ///< mm
   int parent = -1;
-  int order = 1;     ///< 1 primary, 2 secondary, 3 tertiary and finer
-  int tips = 0;      ///< ends of veins that it feeds
-  float radius = 0;  ///< mm
+  int order = 1;        ///< 1 primary, 2 secondary, 3 tertiary and finer
+  bool midrib = false;  ///< of the first guide: the stalk and what goes on from it
+  int tips = 0;         ///< ends of veins that it feeds
+  float radius = 0;     ///< mm
 };
 
 struct VenationOptions {
@@ -35,7 +36,8 @@ inline constexpr float kKillShare = 0.5f;
 /// sources appear wherever no vein and no other source is near, each draws the vein node nearest
 /// to it of those that it sees within the blade, nodes grow by a step along the mean direction to
 /// their sources, and sources that are reached vanish. That is repeated with sources ever closer
-/// together, which is uniform growth of the blade seen in the frame of the full-grown leaf.
+/// together, which is uniform growth of the blade seen in the frame of the full-grown leaf. After
+/// each round the new ends run on to the vein ahead of them, without joining it.
 std::vector<VeinNode> growVenation(const LeafForm& form, const VenationOptions& options,
                                    std::uint64_t seed);
 

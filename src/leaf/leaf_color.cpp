@@ -3,7 +3,7 @@
 
 #include "base/parallel.h"
 #include "base/tile_noise.h"
-#include "leaf/leaf_maps.h"
+#include "leaf/grown_leaf.h"
 
 namespace verdure {
 

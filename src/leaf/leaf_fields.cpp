@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "leaf/leaf_maps.h"
+#include "leaf/grown_leaf.h"
 
 namespace verdure {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "leaf/leaf_maps.h"
+#include "leaf/grown_leaf.h"
 #include "verdure/error.h"
 
 namespace verdure {

@@ -1,56 +1,77 @@
 #ifndef VERDURE_LEAF_LEAF_MAPS_H_
 #define VERDURE_LEAF_LEAF_MAPS_H_
 
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
-#include "leaf/leaf_raster.h"
-#include "leaf/leaf_species.h"
-
-// What the maps of a blade are made from, texel by texel, and the steps that make them.
+#include "verdure/leaf.h"
+#include "verdure/leaf_files.h"
 
 namespace verdure {
 
-/// A grown leaf before it is painted.
-struct GrownLeaf {
-  LeafForm form;
-  std::vector<VeinNode> veins;
+/// A map as a file holds it: fractions of white for PNG and JPEG, the numbers themselves for EXR.
+struct LeafMap {
+  std::string where;
+  int width = 0, height = 0;
+  int channels = 0;           ///< 1 grey, 2 grey and alpha, 3 RGB, 4 RGBA
+  bool physical = false;      ///< EXR: linear colours, signed normals, millimetres
+  std::vector<float> values;  ///< width * height * channels
+
+  std::size_t texelCount() const { return values.size() / static_cast<std::size_t>(channels); }
+  bool hasAlpha() const { return channels == 2 || channels == 4; }
+  float alpha(std::size_t texel) const {
+    return values[(texel + 1) * static_cast<std::size_t>(channels) - 1];
+  }
+  glm::vec3 color(std::size_t texel) const {
+    const float* v = values.data() + texel * static_cast<std::size_t>(channels);
+    return channels < 3 ? glm::vec3(v[0]) : glm::vec3(v[0], v[1], v[2]);
+  }
 };
-GrownLeaf growForm(const LeafSpecies& species, std::uint32_t seed);
 
-struct BladeFields {
-  LeafFrame frame;
-  std::vector<float> coverage;  ///< by the outline, [0, 1]
-  std::vector<float> edge;      ///< mm to the outline, positive inside, at most edge_reach
-  Ridges ridge;                 ///< veins
-  std::vector<float> vein;      ///< mm to the nearest vein
-  std::vector<float> major;     ///< mm to the nearest primary or secondary vein
-  std::vector<float> stalk;     ///< 1 on the stalk, 0 on the blade
-  float edge_reach = 0;
-  float stalk_radius = 0;  ///< mm
+/// Millimetres at black and at white.
+struct LeafRange {
+  float low = 0.0f, high = 0.0f;
 };
-BladeFields rasterise(const GrownLeaf& leaf, const LeafSpecies& species, int size);
 
-/// What time does to a leaf, texel by texel.
-struct Blemishes {
-  std::vector<float> hole;   ///< mm to the nearest hole or bite, negative inside
-  std::vector<float> brown;  ///< dead tissue, [0, 1]
+struct LeafSideMaps {
+  std::optional<LeafMap> albedo, translucency, normal, relief;
+  std::optional<LeafRange> relief_range_mm;
 };
-Blemishes blemish(const GrownLeaf& leaf, const BladeFields& fields, const LeafSpecies& species,
-                  const LeafGrowOptions& options);
 
-/// Fills relief, thickness and normals.
-void shapeRelief(const BladeFields& fields, const LeafSpecies& species, std::uint32_t seed,
-                 LeafSet& set);
+/// What any of the ways in has found of a leaf; makeLeafSet() fills the rest.
+struct LeafMaps {
+  std::string where;  ///< for messages
+  std::string name;
+  std::array<LeafSideMaps, 2> sides;  ///< front, back
+  std::optional<LeafMap> thickness, opacity;
+  std::optional<LeafRange> thickness_range_mm;
+  std::optional<float> thickness_mm;  ///< without a map
+  std::optional<float> mm_per_texel, width_mm;
+  LeafOptics optics;
+  std::vector<std::string> notes;
+};
 
-/// Fills albedo and translucency of both sides.
-void paintLeaf(const BladeFields& fields, const Blemishes& blemishes, const LeafSpecies& species,
-               const LeafGrowOptions& options, LeafSet& set);
+/// Decodes by the ending of `where`: .exr, else PNG or JPEG. Throws Error.
+LeafMap readLeafMap(const std::filesystem::path& path);
+LeafMap decodeLeafMap(std::span<const std::uint8_t> file, const std::string& where);
 
-/// Normals of a side from the slopes of its relief (central differences, one-sided at the borders).
-void setNormals(LeafSide& side, int size, float mm_per_texel);
+/// Throws Error as readLeafSet does.
+LeafSet makeLeafSet(LeafMaps maps, const LeafImportOptions& options);
 
-/// A shoot with needles: all maps.
-LeafSet growShoot(const LeafSpecies& species, const LeafGrowOptions& options);
+/// Heights, mm, whose slopes (rise over run: x to the right, y down) are nearest to the given ones,
+/// zero-mean: Frankot and Chellappa, "A Method for Enforcing Integrability in Shape from Shading
+/// Algorithms", 1988, with a cosine transform, so that nothing has to be periodic. `step_mm`: width
+/// of a texel.
+std::vector<float> heightsFromSlopes(const std::vector<glm::vec2>& slopes, int width, int height,
+                                     float step_mm);
+
+/// Slopes by central differences (one-sided at the border and where `inside` ends; 0 outside).
+std::vector<glm::vec2> slopesFromHeights(const std::vector<float>& heights_mm,
+                                         const std::vector<bool>& inside, int width, int height,
+                                         float step_mm);
 
 }  // namespace verdure
 

@@ -19,9 +19,9 @@ glm::vec2 polar(float angle_deg, float radius) {
 
 }  // namespace
 
-LeafForm makeMaple(std::uint64_t seed) {
+LeafPlan makeMaple(std::uint64_t seed) {
   Random random(hash(seed ^ 0x6d61706c65ull));
-  LeafForm leaf;
+  LeafPlan leaf;
   const float middle = 58 * random.uniform(0.94f, 1.06f);
   leaf.blade_base = 30 * random.uniform(0.9f, 1.1f);
   leaf.stalk_radius = 0.55f;
@@ -39,14 +39,14 @@ LeafForm makeMaple(std::uint64_t seed) {
         {i < 0 ? -angle : angle, middle * form.length * (i == 0 ? 1.0f : 1 + random.vary(0.05f))});
   }
   // Where neighbours part; before the first and behind the last finger: the stalk.
-  std::vector<glm::vec2> bays{{leaf.stalk_radius, 0}};
+  std::vector<glm::vec2> bays{{leaf.stalk_radius, -0.8f}};
   for (std::size_t k = 0; k + 1 < fingers.size(); ++k) {
     const float shorter = std::min(fingers[k].length, fingers[k + 1].length);
     const float share = fingers[k].length / (fingers[k].length + fingers[k + 1].length);
     bays.push_back(polar(glm::mix(fingers[k].angle, fingers[k + 1].angle, share),
                          kSinus * shorter * (1 + random.vary(0.08f)) + 0.03f * middle));
   }
-  bays.emplace_back(-leaf.stalk_radius, 0);
+  bays.emplace_back(-leaf.stalk_radius, -0.8f);
 
   leaf.outline = stalkSide(leaf);
   leaf.guides.push_back({splineThrough({{{0, 0}}, {palm}}, 1.0f), 1, -1});
@@ -70,20 +70,18 @@ LeafForm makeMaple(std::uint64_t seed) {
     shape.tooth_mm = 0.024f * length;
     shape.minor_mm = 0.012f * length;
     shape.pitch_mm = 0.028f * length;
-    shape.teeth_from = lowest ? 0.25f : 0.46f;
     shape.teeth_to = 0.97f;
     shape.saw = {{}, {}, 0.22f, 0.9f, 1.15f};
     shape.vary = 0.05f;
     const auto half = [&](const glm::vec2& bay, bool outer) {
       const float slim = lowest ? 1.25f : 1.0f;
       shape.margin = {{bay}};
-      if (lowest && outer)
-        shape.margin.push_back({{0.150f, 0.20f}});
-      else
-        shape.margin.push_back({{std::max(bay.x + 0.006f, 0.088f), bay.y + 0.09f}});
-      for (const glm::vec2& p : {glm::vec2(0.122f, 0.48f), glm::vec2(0.108f, 0.61f),
-                                 glm::vec2(0.060f, 0.77f), glm::vec2(0.019f, 0.905f)})
-        shape.margin.push_back({{slim * p.x, p.y}});
+      shape.teeth_from = outer ? 0.25f : std::max(0.44f, bay.y + 0.16f);
+      if (outer) shape.margin.push_back({{0.150f, 0.20f}});
+      for (const glm::vec2& p :
+           {glm::vec2(0.094f, 0.36f), glm::vec2(0.122f, 0.48f), glm::vec2(0.108f, 0.61f),
+            glm::vec2(0.060f, 0.77f), glm::vec2(0.019f, 0.905f)})
+        if (p.y > bay.y + 0.08f) shape.margin.push_back({{slim * p.x, p.y}});
       shape.margin.push_back({{0, 1}});
       return makeHalfBlade(shape, outer ? 0.0f : 1.0f, random);
     };

@@ -70,7 +70,7 @@ Half makeHalf(float length, float stalk_radius, Random& random) {
       addTooth(points, tooth, glm::normalize(0.8f * along + 0.6f * up), length);
       teeth.push_back(tooth);
     }
-    points.push_back({local(0.58f, 0.125f * broad)});
+    points.push_back({local(0.58f, (form.upper > 0 ? 0.125f : 0.07f) * broad)});
     // A round bay.
     glm::vec2 sinus = form.sinus;
     sinus.x *= 1 + random.vary(0.12f);
@@ -110,9 +110,9 @@ Half makeHalf(float length, float stalk_radius, Random& random) {
 
 }  // namespace
 
-LeafForm makeOak(std::uint64_t seed) {
+LeafPlan makeOak(std::uint64_t seed) {
   Random random(hash(seed ^ 0x6f616bull));
-  LeafForm leaf;
+  LeafPlan leaf;
   const float length = 118 * random.uniform(0.94f, 1.06f);
   leaf.blade_base = 26 * random.uniform(0.85f, 1.15f);
   leaf.stalk_radius = 0.75f;

@@ -143,11 +143,11 @@ Polyline wiggled(const Polyline& points, float amplitude, Random& random) {
   return result;
 }
 
-float stalkRadius(const LeafForm& form, float y) {
+float stalkRadius(const LeafPlan& form, float y) {
   return form.stalk_radius * (1 + 0.55f * std::exp(-y / (4 * form.stalk_radius)));
 }
 
-Polyline stalkSide(const LeafForm& form) {
+Polyline stalkSide(const LeafPlan& form) {
   Polyline side;
   const int steps = std::max(2, static_cast<int>(form.blade_base));
   for (int k = 0; k < steps; ++k) {
@@ -157,7 +157,7 @@ Polyline stalkSide(const LeafForm& form) {
   return side;
 }
 
-void bendForm(LeafForm& form, float bend, Random& random) {
+void bendForm(LeafPlan& form, float bend, Random& random) {
   float top = 0;
   for (const glm::vec2& p : form.outline) top = std::max(top, p.y);
   const float sign = random.uniform() < 0.5f ? -1.0f : 1.0f;
@@ -172,9 +172,9 @@ void bendForm(LeafForm& form, float bend, Random& random) {
     for (glm::vec2& p : guide.points) shift(p);
 }
 
-LeafForm makePinnate(const PinnateForm& form, std::uint64_t seed) {
+LeafPlan makePinnate(const PinnateForm& form, std::uint64_t seed) {
   Random random(hash(seed ^ 0x6c656166ull));
-  LeafForm leaf;
+  LeafPlan leaf;
   leaf.blade_base = form.stalk_mm;
   leaf.stalk_radius = form.stalk_radius_mm;
   BladeShape shape = form.blade;

@@ -12,7 +12,7 @@ namespace verdure {
 
 /// A grown leaf before it is painted.
 struct GrownLeaf {
-  LeafForm form;
+  LeafPlan form;
   std::vector<VeinNode> veins;
 };
 GrownLeaf growForm(const LeafSpecies& species, std::uint32_t seed);

@@ -61,12 +61,12 @@ void paintLeaf(const BladeFields& fields, const Blemishes& blemishes, const Leaf
       const Pigments full = pigments;
       pigments.chlorophyll *= 1 - lack;
       pigments.anthocyanin *= 1 - 0.7f * lack;
+      pigments.carotenoid *= 1 - 0.35f * lack;
       // The midrib's foot still has the stalk's colours.
       const float thick =
           glm::smoothstep(0.35f, 0.85f, fields.ridge.height[i] / fields.stalk_radius);
       pigments = mix(pigments, species.stalk, std::max(1 - blade, 0.7f * thick));
-      const float wood = vein * blade * (0.10f + 0.35f * turned);
-      pigments.tannin += 0.25f * wood;
+      pigments.tannin += vein * blade * (0.03f + 0.22f * turned);
 
       // Dead tissue: brown, darker where it borders on the living.
       const float brown = blemishes.brown[i];

@@ -18,7 +18,7 @@ struct VeinGuide {
   int parent = -1;  ///< guide that it leaves, before this one; -1: the stalk's foot
 };
 
-struct LeafForm {
+struct LeafPlan {
   Polyline outline;          ///< closed, anticlockwise, from y = 0 on
   float blade_base = 0;      ///< y where the stalk ends and the blade begins
   float stalk_radius = 0.5;  ///< half the stalk's width
@@ -63,22 +63,22 @@ struct PinnateForm {
   float bend = 0.03f;  ///< how far leaves bend to one side, by their length
 };
 
-LeafForm makePinnate(const PinnateForm& form, std::uint64_t seed);
+LeafPlan makePinnate(const PinnateForm& form, std::uint64_t seed);
 /// California black oak: lobes with bristles.
-LeafForm makeOak(std::uint64_t seed);
+LeafPlan makeOak(std::uint64_t seed);
 /// Japanese maple: seven fingers.
-LeafForm makeMaple(std::uint64_t seed);
+LeafPlan makeMaple(std::uint64_t seed);
 
 // Shared by the above.
 
 /// Shifts all points sideways by a smooth curve of y that is 0 at the foot: areas do not change.
-void bendForm(LeafForm& form, float bend, Random& random);
+void bendForm(LeafPlan& form, float bend, Random& random);
 /// A vein that is not quite smooth.
 Polyline wiggled(const Polyline& points, float amplitude, Random& random);
 /// Half the width of the stalk at height y: it is swollen at the foot.
-float stalkRadius(const LeafForm& form, float y);
+float stalkRadius(const LeafPlan& form, float y);
 /// Right half of the stalk: from the foot to the blade.
-Polyline stalkSide(const LeafForm& form);
+Polyline stalkSide(const LeafPlan& form);
 
 }  // namespace verdure
 

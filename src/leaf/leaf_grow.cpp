@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 
 #include "base/parallel.h"
 #include "leaf/grown_leaf.h"
@@ -35,6 +35,18 @@ LeafSet growBlade(const LeafSpecies& species, const LeafGrowOptions& options) {
   return set;
 }
 
+/// What is reflected and what comes through on the other side never sum to more than 1.
+void limitLight(LeafSet& set) {
+  const auto limit = [](const glm::vec3& reflected, glm::vec3& through) {
+    const glm::vec3 share = (glm::vec3(0.99f) - reflected) / glm::max(through, glm::vec3(1e-6f));
+    through *= glm::clamp(std::min({share.x, share.y, share.z}), 0.0f, 1.0f);
+  };
+  parallelFor(set.texelCount(), 1 << 14, [&](std::size_t i) {
+    limit(set.front.albedo[i], set.back.translucency[i]);
+    limit(set.back.albedo[i], set.front.translucency[i]);
+  });
+}
+
 }  // namespace
 
 LeafSet growLeaf(const LeafGrowOptions& options) {
@@ -47,6 +59,7 @@ LeafSet growLeaf(const LeafGrowOptions& options) {
   for (LeafSide* side : {&set.front, &set.back})
     for (std::vector<glm::vec3>* map : {&side->albedo, &side->translucency})
       fillOutside(*map, set.opacity, options.size);
+  limitLight(set);
   checkLeafSet(set, "grown leaf " + options.species);
   return set;
 }

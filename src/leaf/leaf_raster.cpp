@@ -127,7 +127,18 @@ std::vector<float> coverageOf(const Polyline& polygon, const LeafFrame& frame) {
 std::vector<float> distanceTo(std::span<const Stroke> strokes, float reach_mm,
                               const LeafFrame& frame) {
   const float scale = 1 / frame.mmPerTexel(), reach = reach_mm * scale;
-  const Tiles tiles = tilesOf(strokes, reach, frame);
+  Tiles tiles = tilesOf(strokes, reach, frame);
+  // Where one stroke is nearer to a whole tile than another is to any of it, the other goes.
+  parallelFor(tiles.strokes.size(), 64, [&](std::size_t i) {
+    const auto count = static_cast<std::size_t>(tiles.count);
+    const glm::vec2 center = (glm::vec2(i % count, i / count) + 0.5f) * static_cast<float>(kTile);
+    float nearest = 1e30f, t;
+    for (const Stroke& s : tiles.strokes[i])
+      nearest = std::min(nearest, std::sqrt(squaredDistance(center, s, t)));
+    const float far = nearest + 1.42f * kTile;  // the tile's diagonal
+    std::erase_if(tiles.strokes[i],
+                  [&](const Stroke& s) { return squaredDistance(center, s, t) > far * far; });
+  });
   const auto side = static_cast<std::size_t>(frame.size);
   std::vector<float> distance(side * side);
   forTexels(tiles, frame.size, [&](int x, int y, const std::vector<Stroke>& list) {
@@ -210,9 +221,9 @@ void boxFilter(const float* in, float* out, int n, std::size_t stride, int r) {
 void blur(std::vector<float>& map, int size, float sigma) {
   // Three boxes of half width r have the variance r (r + 1); two neighbouring r are mixed.
   const auto side = static_cast<std::size_t>(size);
-  const float exact = 0.5f * (std::sqrt(1 + 4 * sigma * sigma) - 1);
-  const int r = static_cast<int>(exact);
-  const float more = exact - static_cast<float>(r);
+  const int r = static_cast<int>(0.5f * (std::sqrt(1 + 4 * sigma * sigma) - 1));
+  const auto whole = static_cast<float>(r);
+  const float more = (sigma * sigma - whole * (whole + 1)) / (2 * (whole + 1));
   std::vector<float> other(map.size());
   const auto pass = [&](bool rows) {
     parallelFor(side, 16, [&](std::size_t line) {

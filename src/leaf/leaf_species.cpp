@@ -152,7 +152,7 @@ LeafSpecies japaneseMaple() {
   s.quilt_reach_mm = 1.8f;
   // A red-leaved form, as the tree.
   s.spring = {0.16f, 0.35f, 0.95f, 0};
-  s.summer = {0.44f, 0.16f, 1.00f, 0};
+  s.summer = {0.55f, 0.14f, 1.05f, 0};
   s.autumn = {0.0f, 0.75f, 0.90f, 0};
   s.stalk = {0.22f, 0.25f, 0.95f, 0.12f};
   s.back_path = 0.84f;
@@ -166,8 +166,8 @@ LeafSpecies scotsPine() {
   LeafSpecies s;
   s.info = {"scots-pine", "Scots pine (Pinus sylvestris)"};
   s.thickness_mm = 0.8f;
-  s.spring = {0.60f, 0.32f, 0, 0};
-  s.summer = {0.84f, 0.20f, 0, 0};
+  s.spring = {0.70f, 0.36f, 0, 0};
+  s.summer = {1.02f, 0.24f, 0, 0};
   s.autumn = {0.45f, 0.60f, 0, 0.25f};
   s.stalk = {0.10f, 0.40f, 0.10f, 0.85f};
   s.back_path = 0.92f;

@@ -13,7 +13,7 @@ namespace verdure {
 
 struct LeafSpecies {
   LeafSpeciesInfo info;
-  std::function<LeafForm(std::uint64_t seed)> form;  ///< none: a shoot with needles
+  std::function<LeafPlan(std::uint64_t seed)> form;  ///< none: a shoot with needles
   VenationOptions veins;
 
   float thickness_mm = 0.2f;    ///< of the blade between veins

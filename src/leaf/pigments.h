@@ -21,7 +21,7 @@ inline Pigments mix(const Pigments& a, const Pigments& b, float t) {
 inline glm::vec3 absorbance(const Pigments& p) {
   return p.chlorophyll * glm::vec3(2.45f, 1.45f, 2.5f) +
          p.carotenoid * glm::vec3(0.02f, 0.26f, 2.3f) +
-         p.anthocyanin * glm::vec3(0.06f, 2.4f, 1.25f) + p.tannin * glm::vec3(0.75f, 1.25f, 1.75f);
+         p.anthocyanin * glm::vec3(0.10f, 2.4f, 1.6f) + p.tannin * glm::vec3(0.75f, 1.25f, 1.75f);
 }
 
 /// What is scattered back out of tissue of that absorbance, linear RGB. `path`: how deep light

@@ -87,7 +87,7 @@ struct Source {
 
 class Growth {
  public:
-  Growth(const LeafForm& form, const VenationOptions& options, std::uint64_t seed)
+  Growth(const LeafPlan& form, const VenationOptions& options, std::uint64_t seed)
       : form_(form),
         options_(options),
         random_(hash(seed ^ 0x7665696eull)),
@@ -155,12 +155,22 @@ class Growth {
       for (int k = 1; k <= steps; ++k) {
         const float f = static_cast<float>(k) / static_cast<float>(steps);
         const glm::vec2 p = curve.at(curve.length() * f) + (1 - f) * (1 - f) * snap;
-        const bool blade = p.y > form_.blade_base + 1.0f;
+        const bool blade = self > 0 || p.y > form_.blade_base + 1.0f;
         if (blade && depth_(p) < 0.4f * options_.clearance_mm) break;
         if (guide.order > 1 && crowded(p, 1.3f * options_.step_mm, self, guide.parent)) break;
         parent = add(p, parent, guide.order, self);
       }
     }
+  }
+
+  bool onStalk(const glm::vec2& p) const {
+    bool found = false;
+    const float reach = 2 * form_.stalk_radius;
+    if (p.y < form_.blade_base)
+      grid_.near(p, reach, [&](int id) {
+        found |= node(id).midrib && glm::length(node(id).position - p) < reach;
+      });
+    return found;
   }
 
   /// Sources at least `spacing` from all nodes and from each other, so many that none fits in
@@ -175,7 +185,7 @@ class Growth {
         const float x = (static_cast<float>(i) + random_.uniform()) * pitch;
         const float y = (static_cast<float>(j) + random_.uniform()) * pitch;
         const glm::vec2 p(x - 0.5f * frame.extent_mm, y);
-        if (p.y > form_.blade_base && depth_(p) > 1.5f * options_.clearance_mm)
+        if (depth_(p) > 1.5f * options_.clearance_mm && !onStalk(p))
           candidates.push_back(p);
       }
     for (std::size_t i = candidates.size(); i > 1; --i)
@@ -207,7 +217,8 @@ class Growth {
       std::vector<std::pair<float, int>> near;
       grid_.near(source.position, radius, [&](int id) {
         const float d = glm::length(node(id).position - source.position);
-        if (d < radius && node(id).position.y >= form_.blade_base) near.emplace_back(d, id);
+        if (d < radius && !(node(id).midrib && node(id).position.y < form_.blade_base))
+          near.emplace_back(d, id);
       });
       std::sort(near.begin(), near.end());
       for (const auto& [d, id] : near)
@@ -333,7 +344,7 @@ class Growth {
     }
   }
 
-  const LeafForm& form_;
+  const LeafPlan& form_;
   const VenationOptions& options_;
   Random random_;
   Depth depth_;
@@ -345,7 +356,7 @@ class Growth {
 
 }  // namespace
 
-std::vector<VeinNode> growVenation(const LeafForm& form, const VenationOptions& options,
+std::vector<VeinNode> growVenation(const LeafPlan& form, const VenationOptions& options,
                                    std::uint64_t seed) {
   std::vector<VeinNode> nodes = Growth(form, options, seed).run();
   setVeinWidths(nodes, kMidribShare * form.stalk_radius, options.exponent);

@@ -38,7 +38,7 @@ inline constexpr float kKillShare = 0.5f;
 /// their sources, and sources that are reached vanish. That is repeated with sources ever closer
 /// together, which is uniform growth of the blade seen in the frame of the full-grown leaf. After
 /// each round the new ends run on to the vein ahead of them, without joining it.
-std::vector<VeinNode> growVenation(const LeafForm& form, const VenationOptions& options,
+std::vector<VeinNode> growVenation(const LeafPlan& form, const VenationOptions& options,
                                    std::uint64_t seed);
 
 /// Sets tips and radii: every end of a vein has the same radius, and at each fork r^n is the sum of

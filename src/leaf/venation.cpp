@@ -152,11 +152,14 @@ class Growth {
       // It begins on a node, and is bent to do so.
       const glm::vec2 snap = node(parent).position - guide.points.front();
       const int steps = static_cast<int>(std::ceil(curve.length() / options_.step_mm));
+      // Large veins go nearly to the tips of teeth, but see no bay narrower than a sample.
+      const float least =
+          std::max(0.4f * options_.clearance_mm, 0.75f * depth_.frame().mmPerTexel());
       for (int k = 1; k <= steps; ++k) {
         const float f = static_cast<float>(k) / static_cast<float>(steps);
         const glm::vec2 p = curve.at(curve.length() * f) + (1 - f) * (1 - f) * snap;
         const bool blade = self > 0 || p.y > form_.blade_base + 1.0f;
-        if (blade && depth_(p) < 0.4f * options_.clearance_mm) break;
+        if (blade && depth_(p) < least) break;
         if (guide.order > 1 && crowded(p, 1.3f * options_.step_mm, self, guide.parent)) break;
         parent = add(p, parent, guide.order, self);
       }

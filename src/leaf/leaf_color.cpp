@@ -84,7 +84,8 @@ void paintLeaf(const BladeFields& fields, const Blemishes& blemishes, const Leaf
       glm::vec3 through =
           transmitted(glm::mix(absorbance(full), depth, std::max(1 - blade, brown)), 1);
       const float thread = vein * (2 - vein);
-      const float shade = 1 - (0.60f * thread + 0.08f * halo) * blade - 0.45f * fields.stalk[i];
+      const float shade = 1 - (0.60f * thread + 0.08f * halo) * blade -
+                          0.07f * (1 - field) * blade - 0.45f * fields.stalk[i];
       const glm::vec3 wooden(1.0f, 0.93f, 0.75f);
       through *= shade * glm::mix(glm::vec3(1), wooden, vein);
       through *= 1 - 0.45f * brown;

@@ -18,7 +18,7 @@ struct LeafSpecies {
 
   float thickness_mm = 0.2f;    ///< of the blade between veins
   float protrusion = 1.0f;      ///< of veins at the back, by their radius
-  float groove = 0.4f;          ///< of veins at the front, by their radius
+  float groove = 0.7f;          ///< of veins at the front, by their radius
   float quilt_mm = 0.3f;        ///< height of the bulges between large veins
   float quilt_reach_mm = 2.5f;  ///< from a vein to the bulge's top
   float pillow_mm = 0.04f;      ///< the same between fine veins

@@ -96,6 +96,7 @@ class Growth {
 
   std::vector<VeinNode> run() {
     placeGuides();
+    closeEnds(0, 2.5f * options_.spacing_mm);
     float spacing = options_.first_spacing_mm;
     for (bool last = false; !last; spacing *= 0.66f) {
       last = spacing <= options_.spacing_mm * 1.2f;
@@ -103,7 +104,7 @@ class Growth {
       placeSources(spacing);
       const std::size_t before = nodes_.size();
       grow(std::max(kKillShare * spacing, 1.05f * options_.step_mm));
-      closeEnds(before, 1.25f * spacing);
+      closeEnds(before, 2.2f * spacing);
     }
     return std::move(nodes_);
   }
@@ -160,7 +161,10 @@ class Growth {
         const glm::vec2 p = curve.at(curve.length() * f) + (1 - f) * (1 - f) * snap;
         const bool blade = self > 0 || p.y > form_.blade_base + 1.0f;
         if (blade && depth_(p) < least) break;
-        if (guide.order > 1 && crowded(p, 1.3f * options_.step_mm, self, guide.parent)) break;
+        // Loops end near the vein above.
+        if (guide.order > 1 && f > 0.3f &&
+            crowded(p, 1.3f * options_.spacing_mm, self, guide.parent))
+          break;
         parent = add(p, parent, guide.order, self);
       }
     }
@@ -188,8 +192,7 @@ class Growth {
         const float x = (static_cast<float>(i) + random_.uniform()) * pitch;
         const float y = (static_cast<float>(j) + random_.uniform()) * pitch;
         const glm::vec2 p(x - 0.5f * frame.extent_mm, y);
-        if (depth_(p) > 1.5f * options_.clearance_mm && !onStalk(p))
-          candidates.push_back(p);
+        if (depth_(p) > 1.5f * options_.clearance_mm && !onStalk(p)) candidates.push_back(p);
       }
     for (std::size_t i = candidates.size(); i > 1; --i)
       std::swap(candidates[i - 1], candidates[random_.below(static_cast<std::uint32_t>(i))]);
@@ -339,10 +342,13 @@ class Growth {
       const float length = glm::length(end - tip);
       const int steps = std::max(1, static_cast<int>(std::ceil(length / options_.step_mm)));
       int parent = static_cast<int>(id);
+      // A slight bow, where there is room for it.
+      glm::vec2 bow = random_.vary(0.16f) * glm::vec2(tip.y - end.y, end.x - tip.x);
+      if (depth_(0.5f * (tip + end)) < options_.clearance_mm + 0.5f * length) bow = glm::vec2(0);
       for (int k = 1; k <= steps; ++k) {
         const float f = k < steps ? static_cast<float>(k) / static_cast<float>(steps)
                                   : 1 - 0.05f * options_.step_mm / length;
-        parent = add(glm::mix(tip, end, f), parent, 3, -1);
+        parent = add(glm::mix(tip, end, f) + f * (1 - f) * bow, parent, 3, -1);
       }
     }
   }

@@ -39,14 +39,14 @@ std::vector<Spot> spotsOf(const GrownLeaf& leaf, const LeafFrame& frame,
     if (k < 40) {
       if (!stalk) add(at, birth, 0.2f + 1.0f * size * size * size, false);
     } else if (k < 43 && !stalk) {
-      add(at, 0.36f + 0.64f * random.uniform(), 1.0f + 2.2f * size * size, true);
+      add(at, 0.40f + 0.60f * random.uniform(), 1.0f + 2.2f * size * size, true);
     }
   }
   // Bites out of the margin.
   for (int k = 0; k < 3; ++k) {
     const glm::vec2 at =
         leaf.form.outline[random.below(static_cast<std::uint32_t>(leaf.form.outline.size()))];
-    const float birth = 0.36f + 0.9f * random.uniform(), size = random.uniform();
+    const float birth = 0.40f + 0.9f * random.uniform(), size = random.uniform();
     if (at.y > leaf.form.blade_base + 4) add(at, birth, 1.2f + 2.5f * size * size, true);
   }
   return spots;

@@ -49,6 +49,14 @@ struct HdrImage {
   const glm::vec3& at(int x, int y) const { return const_cast<HdrImage*>(this)->at(x, y); }
 };
 
+/// Maps of numbers: `channels` values for each texel side by side, rows from the top.
+struct Image16 {
+  int width = 0;
+  int height = 0;
+  int channels = 0;                   ///< 1 grey, 2 grey and alpha, 3 RGB, 4 RGBA
+  std::vector<std::uint16_t> values;  ///< width * height * channels
+};
+
 /// [0, 1] to a byte, rounded; what lies outside is clamped.
 inline std::uint8_t toByte(float value) {
   return static_cast<std::uint8_t>(glm::clamp(value, 0.0f, 1.0f) * 255.0f + 0.5f);
@@ -59,6 +67,13 @@ Image decodeImage(std::span<const std::uint8_t> file, const std::string& where);
 
 /// Reads a PNG or JPEG file. Throws Error.
 Image readImage(const std::filesystem::path& path);
+
+/// Decodes PNG of 8 or 16 bits, or JPEG, with the channels that the file has; a byte v becomes 257
+/// v, so that 65535 is white. Throws Error naming `where`.
+Image16 decodeImage16(std::span<const std::uint8_t> file, const std::string& where);
+
+/// Encodes as PNG of 16 bits. Throws Error for 2 GiB or more.
+std::vector<std::uint8_t> encodePng(const Image16& image);
 
 /// Encodes as PNG (RGB when every alpha is 255, else RGBA). Throws Error for 2 GiB or more.
 std::vector<std::uint8_t> encodePng(const Image& image);
@@ -77,10 +92,17 @@ HdrImage readHdrImage(const std::filesystem::path& path);
 /// The same from a file's bytes; `where` names it and its kind (.exr, .hdr, .pic).
 HdrImage decodeHdrImage(std::span<const std::uint8_t> file, const std::string& where);
 
+/// Reads an OpenEXR file as readHdrImage does, whose values are no light and may be negative.
+HdrImage readExrMap(const std::filesystem::path& path);
+
+enum class ExrDepth { kFloat, kHalf };
+
 /// Writes an OpenEXR file of 32-bit floats (what is measured against a reference must not end at
-/// the 11 bits of a half), ZIP compressed: lossless. Atomic as writePng. Throws Error, also for an
-/// image without pixels or of pixels that are not finite.
-void writeExr(const HdrImage& image, const std::filesystem::path& path);
+/// the 11 bits of a half) or of halves (maps for shaders), ZIP compressed: lossless. Atomic as
+/// writePng. Throws Error, also for an image without pixels or of pixels that are not finite or, in
+/// halves, beyond 65504.
+void writeExr(const HdrImage& image, const std::filesystem::path& path,
+              ExrDepth depth = ExrDepth::kFloat);
 
 }  // namespace verdure
 

@@ -156,6 +156,21 @@ int run(int argc, char** argv) {
   grow_app->add_flag("--parameters", grow.parameters, "List the species' parameters");
   grow_app->add_flag("--json", grow.json, "Print JSON");
 
+  CLI::App* leaf_app = app.add_subcommand("leaf", "Leaves as sets of maps (Habel 2009, chapter 3)");
+  LeafGrowCommand leaf_grow;
+  CLI::App* leaf_grow_app = leaf_app->add_subcommand("grow", "Grow a leaf: outline, veins, maps");
+  leaf_grow_app->add_option("-o,--output", leaf_grow.output, "Folder to write");
+  leaf_grow_app->add_option("--species", leaf_grow.grow.species, "Species, see --list")
+      ->capture_default_str();
+  leaf_grow_app->add_option("--seed", leaf_grow.grow.seed, "Each seed is another leaf")
+      ->capture_default_str();
+  leaf_grow_app->add_option("--size", leaf_grow.grow.size, "Texels a side, 16 to 8192")
+      ->capture_default_str();
+  leaf_grow_app->add_option("--age", leaf_grow.grow.age, "0 spring, 0.4 summer, 1 autumn")
+      ->capture_default_str();
+  leaf_grow_app->add_flag("--list", leaf_grow.list, "List the species");
+  leaf_grow_app->add_flag("--json", leaf_grow.json, "Print JSON");
+
   InspectCommand inspect;
   CLI::App* inspect_app = app.add_subcommand("inspect", "Say what is in a plant file");
   inspect_app->add_option("file", inspect.input, "Plant: .glb .gltf .obj .fbx .dae .ply")
@@ -362,7 +377,10 @@ int run(int argc, char** argv) {
   if (app.get_subcommands().empty())
     throw Error(
         "command line", "no command is named",
-        "use grow, inspect, bake, render, reference, compare, sky, figures or report; see " + help);
+        "use grow, leaf, inspect, bake, render, reference, compare, sky, figures or report; see " +
+            help);
+  if (*leaf_app && leaf_app->get_subcommands().empty())
+    throw Error("leaf", "nothing is named", "use grow; see verdure leaf --help");
   if (*figures_app && figures_app->get_subcommands().empty())
     throw Error("figures", "no paper is named",
                 "use luft, gumbau or sky; see verdure figures --help");
@@ -379,6 +397,7 @@ int run(int argc, char** argv) {
   }
   setThreadCount(threads);
   if (*grow_app) runGrow(grow);
+  if (*leaf_grow_app) runLeafGrow(leaf_grow);
   if (*inspect_app) runInspect(inspect);
   if (*bake_app) runBake(bake);
   if (*render_app) runRender(render);

@@ -8,6 +8,7 @@
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
+#include <half.h>
 #pragma GCC diagnostic pop
 
 #include <algorithm>
@@ -109,7 +110,7 @@ void checkPrimaries(const Imf::Header& header) {
     throw std::runtime_error("its colours have other primaries than sRGB's");
 }
 
-HdrImage decodeExr(std::span<const std::uint8_t> bytes, const std::string& where) {
+HdrImage decodeScanLines(std::span<const std::uint8_t> bytes, const std::string& where) {
   MemoryInput stream(bytes, where);
   Imf::InputFile file(stream);
   const Imf::Header& header = file.header();
@@ -140,6 +141,17 @@ HdrImage decodeExr(std::span<const std::uint8_t> bytes, const std::string& where
         shown.at(x, y) = read.at(static_cast<int>(from_x), static_cast<int>(from_y));
     }
   return shown;
+}
+
+HdrImage decodeExr(std::span<const std::uint8_t> file, const std::string& where) {
+  try {
+    return decodeScanLines(file, where);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw Error(where, std::string("is no OpenEXR image that can be read (") + e.what() + ")",
+                "export it again as RGB scan lines");
+  }
 }
 
 /// Index of the first pixel that is not finite, or the number of pixels.
@@ -181,14 +193,7 @@ HdrImage decodeHdrImage(std::span<const std::uint8_t> file, const std::string& w
   if (kind == ".hdr" || kind == ".pic") {
     image = decodeRadiance(file, where);
   } else if (kind == ".exr") {
-    try {
-      image = decodeExr(file, where);
-    } catch (const std::bad_alloc&) {
-      throw;
-    } catch (const std::exception& e) {
-      throw Error(where, std::string("is no OpenEXR image that can be read (") + e.what() + ")",
-                  "export it again as RGB scan lines");
-    }
+    image = decodeExr(file, where);
   } else {
     throw Error(where, "is no kind of HDR image that can be read", "use .exr, .hdr or .pic");
   }
@@ -200,19 +205,42 @@ HdrImage readHdrImage(const std::filesystem::path& path) {
   return decodeHdrImage(readFile(path), path.string());
 }
 
-void writeExr(const HdrImage& image, const std::filesystem::path& path) {
+HdrImage readExrMap(const std::filesystem::path& path) {
+  HdrImage image = decodeExr(readFile(path), path.string());
+  const std::size_t bad = firstNotFinite(image);
+  if (bad != image.rgb.size()) throw badPixel(image, bad, path.string(), "is NaN or infinite");
+  return image;
+}
+
+void writeExr(const HdrImage& image, const std::filesystem::path& path, ExrDepth depth) {
   if (image.empty()) throw Error(path.string(), "the image has no pixels", "give a size above 0");
   const std::size_t bad = firstNotFinite(image);
   if (bad != image.rgb.size()) throw badPixel(image, bad, path.string(), "is NaN or infinite");
+  std::vector<half> halves;
+  if (depth == ExrDepth::kHalf) {
+    halves.reserve(3 * image.rgb.size());
+    for (std::size_t i = 0; i < image.rgb.size(); ++i)
+      for (int c = 0; c < 3; ++c) {
+        const float value = image.rgb[i][c];
+        if (std::abs(value) > 65504.0f)
+          throw badPixel(image, i, path.string(), "is too large for a half");
+        halves.emplace_back(value);
+      }
+  }
   Imf::Header header(image.width, image.height);
   header.compression() = Imf::ZIP_COMPRESSION;
   Imf::FrameBuffer buffer;
+  const bool is_half = depth == ExrDepth::kHalf;
+  const Imf::PixelType type = is_half ? Imf::HALF : Imf::FLOAT;
+  const std::size_t bytes = is_half ? sizeof(half) : sizeof(float);
   // The library's buffers are not const; a file that is written is not changed.
-  auto* pixels = const_cast<float*>(&image.rgb[0].x);
+  char* channel = is_half ? reinterpret_cast<char*>(halves.data())
+                          : reinterpret_cast<char*>(const_cast<float*>(&image.rgb[0].x));
   for (const char* name : {"R", "G", "B"}) {
-    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-    buffer.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(pixels++), sizeof(glm::vec3),
-                                   sizeof(glm::vec3) * static_cast<std::size_t>(image.width)));
+    header.channels().insert(name, Imf::Channel(type));
+    buffer.insert(name, Imf::Slice(type, channel, 3 * bytes,
+                                   3 * bytes * static_cast<std::size_t>(image.width)));
+    channel += bytes;
   }
   MemoryOutput stream;
   {

@@ -44,6 +44,22 @@ Image readImage(const std::filesystem::path& path) {
   return decodeImage(readFile(path), path.string());
 }
 
+Image16 decodeImage16(std::span<const std::uint8_t> file, const std::string& where) {
+  if (file.size() > std::size_t{std::numeric_limits<int>::max()})
+    throw Error(where, "image file over 2 GiB", "use a smaller image");
+  Image16 image;
+  std::uint16_t* values = stbi_load_16_from_memory(file.data(), static_cast<int>(file.size()),
+                                                   &image.width, &image.height, &image.channels, 0);
+  if (values == nullptr)
+    throw Error(where, std::string("image cannot be decoded (") + stbi_failure_reason() + ")",
+                "use PNG or JPEG");
+  image.values.assign(values, values + static_cast<std::size_t>(image.width) *
+                                           static_cast<std::size_t>(image.height) *
+                                           static_cast<std::size_t>(image.channels));
+  stbi_image_free(values);
+  return image;
+}
+
 std::vector<std::uint8_t> encodePng(const Image& image) {
   // The encoder counts bytes in int.
   if (image.rgba.size() >= std::size_t{std::numeric_limits<int>::max()})

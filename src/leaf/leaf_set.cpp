@@ -34,6 +34,18 @@ void checkLeafSet(const LeafSet& set, const std::string& where) {
     throw Error(where, "the leaf has no texels", "give it maps of at least 1 x 1");
   if (!(set.mm_per_texel > 0) || !std::isfinite(set.mm_per_texel))
     throw Error(where, "its scale is unknown", "say how many millimetres a texel is wide");
+  const LeafOptics& o = set.optics;
+  const auto check = [&where](bool good, const char* name, float value, const char* range) {
+    if (!good)
+      throw Error(where, fmt::format("{} is {:g}", name, value), fmt::format("give {}", range));
+  };
+  check(o.scattering_per_mm > 0 && std::isfinite(o.scattering_per_mm), "scattering_per_mm",
+        o.scattering_per_mm, "a number above 0");
+  check(o.absorption_per_mm > 0 && std::isfinite(o.absorption_per_mm), "absorption_per_mm",
+        o.absorption_per_mm, "a number above 0");
+  check(o.anisotropy > -1 && o.anisotropy < 1, "anisotropy", o.anisotropy, "a number in (-1, 1)");
+  check(o.refractive_index >= 1 && o.refractive_index < 4, "refractive_index", o.refractive_index,
+        "a number in [1, 4)");
   const auto unit = [](float v) { return v >= 0 && v <= 1; };
   const auto color = [&](const glm::vec3& v) { return unit(v.x) && unit(v.y) && unit(v.z); };
   const auto normal = [](const glm::vec3& v) {

@@ -1,0 +1,19 @@
+#ifndef VERDURE_LEAF_LEAF_JSON_H_
+#define VERDURE_LEAF_LEAF_JSON_H_
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+namespace verdure {
+
+/// The file of a leaf's folder that describes its maps (docs/leaves.md).
+inline constexpr const char* kLeafFile = "leaf.json";
+
+/// Parses FOLDER/leaf.json and checks that it is an object of this format and version. Throws
+/// Error.
+nlohmann::ordered_json readLeafJson(const std::filesystem::path& folder);
+void writeLeafJson(const nlohmann::ordered_json& json, const std::filesystem::path& folder);
+
+}  // namespace verdure
+
+#endif  // VERDURE_LEAF_LEAF_JSON_H_

@@ -4,6 +4,7 @@
 #include "shared/color.h"
 #include "shared/density.h"
 #include "shared/illumination.h"
+#include "shared/leaf_basis.h"
 #include "shared/leaf_visibility.h"
 #include "shared/sh.h"
 #include "shared/sky.h"
@@ -27,8 +28,10 @@ struct SharedResults {
   vec4 dome;       // domeCoordinates, reinhard, luminanceOf
   vec4 white;      // automaticWhite / 10, luminanceBin / 512, luminanceInBin / 16
   vec4 leaf;       // visibilityShares, unpackVisibility of packVisibility
+  vec4 basis;      // leafTranslucence, leafTransport
+  vec4 through;    // leafBasis, leafDiffuseTranslucence
 };
-SHARED_SIZE(SharedResults, 176);
+SHARED_SIZE(SharedResults, 208);
 
 SHARED_FUNCTION SharedResults evaluateShared(vec4 a, vec4 b) {
   vec3 n = normalize(vec3(a.x - 0.5f, a.y - 0.5f, a.z - 0.45f));
@@ -76,6 +79,12 @@ SHARED_FUNCTION SharedResults evaluateShared(vec4 a, vec4 b) {
   vec2 shares = visibilityShares(vec2(a.x, b.x), a.y < b.y, 0.1f + 4.0f * a.z);
   vec2 packed_seen = unpackVisibility(float(packVisibility(vec2(a.w, 1.2f * b.w))));
   r.leaf = vec4(shares.x, shares.y, packed_seen.x, packed_seen.y);
+  vec3 behind = vec3(l.x, l.y, -abs(l.z));
+  vec3 coefficients = 2.0f * n + vec3(0.6f);
+  vec3 basis = leafBasis(vec3(l.x, l.y, abs(l.z)));
+  r.basis = vec4(leafTranslucence(vec3(1.5f, 1.2f, 0.9f), color, coefficients, behind),
+                 leafTransport(coefficients, behind));
+  r.through = vec4(basis, leafDiffuseTranslucence(vec3(2.0f), color, a.x, behind).y);
   return r;
 }
 

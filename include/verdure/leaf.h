@@ -18,7 +18,7 @@ struct LeafOptics {
   float scattering_per_mm = 10.2f;  ///< sigma_s, above 0
   float absorption_per_mm = 0.4f;   ///< sigma_a, above 0
   float anisotropy = 0.07f;         ///< g, mean cosine of scattering, in (-1, 1)
-  float refractive_index = 1.33f;   ///< eta of the tissue: what (3.4) makes A of
+  float refractive_index = 1.33f;   ///< eta of the tissue: what (3.4) makes A of, [1, 4)
   float front_roughness = 0.3f;     ///< Cook-Torrance's m, after Bousquet et al. 2005: [0.078, 0.5]
   float back_roughness = 0.0f;      ///< the same of the back, 0 = diffuse
   float front_index = 1.45f;        ///< effective refractive index of the gloss: [1.2, 1.7]

@@ -25,7 +25,8 @@ struct LeafBakeOptions {
   int directions = 128;    ///< N_L, at least 16
   std::uint64_t seed = 1;  ///< of the directions
   int pairs = 3;           ///< n of (3.5)
-  /// rho_d of (3.4), in [0, 1); unset: the mean albedo of both sides.
+  /// rho_d of (3.4), in [0, 1); unset: what a rough surface of LeafOptics::refractive_index throws
+  /// back inside on the mean, with which the multipole agrees with random walks (docs/leaves.md).
   std::optional<float> surface_reflection;
   /// Weights of the albedo's R, G, B at the wavelength for which LeafOptics holds; sum 1. Green
   /// stands for 510 nm; red leaves want (1, 0, 0).

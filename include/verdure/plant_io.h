@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "verdure/leaf_files.h"
 #include "verdure/plant.h"
 
 namespace verdure {
@@ -21,6 +22,14 @@ struct LoadOptions {
 /// Throws Error for files that are missing, truncated, inconsistent, hold non-finite positions, or
 /// require a glTF extension that verdure cannot read.
 Plant loadPlant(const std::filesystem::path& path, const LoadOptions& options = {});
+
+/// The leaf that a material of a .glb or .gltf file shows: base colour, its alpha where it is cut,
+/// normals, KHR_materials_volume's thickness and KHR_materials_diffuse_transmission. Lengths in the
+/// file are metres. `material`: a name or `*` pattern that one material with a base colour texture
+/// matches, empty: the only one. The scale comes from the meshes that wear the material, if
+/// `options` says none. Throws Error as importLeafSet does.
+LeafSet importLeafMaterial(const std::filesystem::path& path, const std::string& material,
+                           const LeafImportOptions& options);
 
 struct ExportOptions {
   bool color1 = false;  ///< also write the ambient coefficient as COLOR_1 (RGB = k, A = 1)

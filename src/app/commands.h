@@ -8,6 +8,7 @@
 #include "app/scene_options.h"
 #include "verdure/density.h"
 #include "verdure/grow.h"
+#include "verdure/leaf_files.h"
 #include "verdure/leaf_grow.h"
 #include "verdure/optical_depth.h"
 #include "verdure/plant_io.h"
@@ -42,6 +43,25 @@ struct InspectCommand {
   bool json = false;
 };
 void runInspect(const InspectCommand& command);
+
+struct LeafImportCommand {
+  std::string input;  ///< folder, .glb or .gltf
+  std::string output;
+  std::string material;
+  LeafImportOptions options;
+};
+void runLeafImport(const LeafImportCommand& command);
+
+struct LeafBakeCommand {
+  std::string input;
+  std::string output;  ///< empty: the input folder
+  std::string method = "gaussians";
+  int directions = 128;
+  std::optional<float> surface_reflection;
+  std::string report;
+  bool json = false;
+};
+void runLeafBake(const LeafBakeCommand& command);
 
 enum class BakeField { kMetaball, kOpticalDepth };
 

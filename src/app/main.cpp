@@ -156,7 +156,7 @@ int run(int argc, char** argv) {
   grow_app->add_flag("--parameters", grow.parameters, "List the species' parameters");
   grow_app->add_flag("--json", grow.json, "Print JSON");
 
-  CLI::App* leaf_app = app.add_subcommand("leaf", "Leaves as sets of maps (Habel 2009, chapter 3)");
+  CLI::App* leaf_app = app.add_subcommand("leaf", "Leaves as maps, and light through them");
   LeafGrowCommand leaf_grow;
   CLI::App* leaf_grow_app = leaf_app->add_subcommand("grow", "Grow a leaf: outline, veins, maps");
   leaf_grow_app->add_option("-o,--output", leaf_grow.output, "Folder to write");
@@ -170,6 +170,41 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   leaf_grow_app->add_flag("--list", leaf_grow.list, "List the species");
   leaf_grow_app->add_flag("--json", leaf_grow.json, "Print JSON");
+  LeafImportCommand leaf_import;
+  CLI::App* leaf_import_app =
+      leaf_app->add_subcommand("import", "Make a leaf's folder of maps or of a material");
+  leaf_import_app
+      ->add_option("source", leaf_import.input,
+                   "Folder with a leaf.json or with maps named as ambientCG does; .glb or .gltf")
+      ->required();
+  leaf_import_app->add_option("-o,--output", leaf_import.output, "Folder to write")->required();
+  leaf_import_app->add_option("--name", leaf_import.options.name, "Name of the leaf");
+  leaf_import_app->add_option("--material", leaf_import.material,
+                              "Which material of the glTF file (* matches anything)");
+  leaf_import_app->add_option("--mm-per-texel", leaf_import.options.mm_per_texel,
+                              "Width of a texel, mm");
+  leaf_import_app->add_option("--width-mm", leaf_import.options.width_mm,
+                              "Instead: width of the maps, mm");
+  leaf_import_app->add_option("--thickness-mm", leaf_import.options.thickness_mm,
+                              "Thickness of the leaf, or of its thickness map's white, mm");
+  leaf_import_app->add_option("--relief-mm", leaf_import.options.relief_mm,
+                              "Height of white over black in maps of relief, mm");
+  LeafBakeCommand leaf_bake;
+  CLI::App* leaf_bake_app =
+      leaf_app->add_subcommand("bake", "Bake light through a leaf (Habel 2009, 3.3)");
+  leaf_bake_app->add_option("folder", leaf_bake.input, "Folder with a leaf.json")->required();
+  leaf_bake_app->add_option("-o,--output", leaf_bake.output, "Folder to write (default: the same)");
+  leaf_bake_app->add_option("--method", leaf_bake.method, "gaussians, or direct (slow, to compare)")
+      ->capture_default_str();
+  leaf_bake_app
+      ->add_option("--directions", leaf_bake.directions, "Directions of light, 16 to 65536")
+      ->capture_default_str();
+  leaf_bake_app->add_option(
+      "--surface-reflection", leaf_bake.surface_reflection,
+      "Share of light inside that the surface throws back, [0, 1) (default: of the leaf's index)");
+  leaf_bake_app->add_option("--report", leaf_bake.report,
+                            "Write every number of the bake, and the basis' errors, as JSON");
+  leaf_bake_app->add_flag("--json", leaf_bake.json, "Print the report as JSON");
 
   InspectCommand inspect;
   CLI::App* inspect_app = app.add_subcommand("inspect", "Say what is in a plant file");
@@ -379,13 +414,13 @@ int run(int argc, char** argv) {
         "command line", "no command is named",
         "use grow, leaf, inspect, bake, render, reference, compare, sky, figures or report; see " +
             help);
-  if (*leaf_app && leaf_app->get_subcommands().empty())
-    throw Error("leaf", "nothing is named", "use grow; see verdure leaf --help");
   if (*figures_app && figures_app->get_subcommands().empty())
     throw Error("figures", "no paper is named",
                 "use luft, gumbau or sky; see verdure figures --help");
   if (*report_app && !*fidelity_app)
     throw Error("report", "nothing is named", "use fidelity; see verdure report --help");
+  if (*leaf_app && leaf_app->get_subcommands().empty())
+    throw Error("leaf", "nothing is named", "use grow, import or bake; see verdure leaf --help");
   for (const CLI::Option* option : render_app->get_options())
     if (option->get_group() == kBakeGroup && option->count() > 0) render.bake_again = true;
   for (const char* name : {"--rho", "--tau", "--fraction", "--norm", "--grid", "--d-min", "--k-min",
@@ -398,6 +433,8 @@ int run(int argc, char** argv) {
   setThreadCount(threads);
   if (*grow_app) runGrow(grow);
   if (*leaf_grow_app) runLeafGrow(leaf_grow);
+  if (*leaf_import_app) runLeafImport(leaf_import);
+  if (*leaf_bake_app) runLeafBake(leaf_bake);
   if (*inspect_app) runInspect(inspect);
   if (*bake_app) runBake(bake);
   if (*render_app) runRender(render);

@@ -15,7 +15,7 @@ struct Lobe {
 };
 
 const Lobe kLobes[] = {
-    {0.03f, {0.245f, 0.130f}, 0.0f, 0.0f, {0.120f, 0.175f}},
+    {0.03f, {0.240f, 0.140f}, 0.0f, 0.0f, {0.150f, 0.168f}},
     {0.15f, {0.405f, 0.350f}, 0.21f, 0.23f, {0.135f, 0.405f}},
     {0.37f, {0.430f, 0.630f}, 0.22f, 0.22f, {0.120f, 0.655f}},
     {0.61f, {0.285f, 0.850f}, 0.20f, 0.19f, {0.072f, 0.850f}},
@@ -43,7 +43,7 @@ Half makeHalf(float length, float stalk_radius, Random& random) {
   const float wide = 1 + random.vary(0.05f);
   for (const Lobe& form : kLobes) {
     const glm::vec2 root(0, form.root + random.vary(0.012f));
-    glm::vec2 tip = form.tip * glm::vec2(wide * (1 + random.vary(0.06f)), 1);
+    glm::vec2 tip = form.tip * glm::vec2(wide * (1 + random.vary(0.08f)), 1);
     tip.y += random.vary(0.018f);
     const glm::vec2 axis = tip - root;
     const float size = glm::length(axis);
@@ -60,8 +60,8 @@ Half makeHalf(float length, float stalk_radius, Random& random) {
       points.push_back({local(0.835f, -0.10f * broad)});
       teeth.push_back(tooth);
     } else {
-      points.push_back({local(0.55f, -0.16f * broad)});
-      points.push_back({local(0.80f, -0.085f * broad)});
+      points.push_back({local(0.50f, -0.21f * broad)});
+      points.push_back({local(0.80f, -0.11f * broad)});
     }
     addTooth(points, tip, along, length);
     points.push_back({local(0.82f, 0.095f * broad)});
@@ -70,7 +70,7 @@ Half makeHalf(float length, float stalk_radius, Random& random) {
       addTooth(points, tooth, glm::normalize(0.8f * along + 0.6f * up), length);
       teeth.push_back(tooth);
     }
-    points.push_back({local(0.58f, (form.upper > 0 ? 0.125f : 0.07f) * broad)});
+    points.push_back({local(0.58f, (form.upper > 0 ? 0.125f : 0.10f) * broad)});
     // A round bay.
     glm::vec2 sinus = form.sinus;
     sinus.x *= 1 + random.vary(0.12f);
@@ -86,7 +86,7 @@ Half makeHalf(float length, float stalk_radius, Random& random) {
       return wiggled(line, 0.006f, random);
     };
     const int secondary = static_cast<int>(half.guides.size());
-    half.guides.push_back({vein(root, tip, 0.04f), 2, -1});
+    half.guides.push_back({vein(root, tip, 0.02f), 2, -1});
     for (const glm::vec2& t : teeth) {
       const float side = glm::dot(t - root, up) > 0 ? 1.0f : -1.0f;
       const glm::vec2 from = root + (0.42f + random.vary(0.03f)) * axis;

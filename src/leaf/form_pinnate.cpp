@@ -178,7 +178,12 @@ LeafPlan makePinnate(const PinnateForm& form, std::uint64_t seed) {
   leaf.blade_base = form.stalk_mm;
   leaf.stalk_radius = form.stalk_radius_mm;
   BladeShape shape = form.blade;
-  shape.length_mm *= random.uniform(0.94f, 1.06f);
+  shape.length_mm *= random.uniform(0.92f, 1.08f);
+  const float wide = random.uniform(0.92f, 1.08f), broadest = random.vary(0.02f);
+  for (std::size_t i = 1; i + 1 < shape.margin.size(); ++i) {
+    glm::vec2& p = shape.margin[i].at;
+    p += glm::vec2((wide - 1) * p.x, broadest * std::max(p.y, 0.0f) * (1 - p.y) * 4);
+  }
   shape.margin.front().at = glm::vec2(form.stalk_radius_mm / shape.length_mm, 0);
   const Polyline stalk = stalkSide(leaf);
   const HalfBlade right = makeHalfBlade(shape, 0.0f, random);

@@ -45,8 +45,8 @@ std::vector<float> Horizon::slopes(int slice) const {
   const bool transposed = std::abs(dy) > std::abs(dx);
   const Field& field = transposed ? columns_ : rows_;
   const double major = transposed ? dy : dx, minor = transposed ? dx : dy;
-  const double lean =
-      std::abs(minor) < 1e-9 ? 0.0 : minor / major;  // texels across per texel along
+  double lean = minor / major;  // texels across per texel along
+  if (std::abs(lean - std::round(lean)) < 1e-9) lean = std::round(lean);
   const auto along = static_cast<std::size_t>(field.along);
   const auto across = static_cast<std::size_t>(field.across);
   const auto drift = static_cast<int>(std::ceil(std::abs(lean) * (field.along - 1)));
@@ -84,7 +84,7 @@ std::vector<float> Horizon::slopes(int slice) const {
         };
         const float low = sample(row), high = share > 0.0f ? sample(row + 1) : low;
         float& slope = found[l * along + a];
-        if (low == kNone && high == kNone) {
+        if ((share < 0.5f ? low : high) == kNone) {
           size = 0;
           slope = kNone;
           continue;
@@ -106,7 +106,7 @@ std::vector<float> Horizon::slopes(int slice) const {
     }
   });
 
-  // Each texel lies between two lines.
+  // Each texel lies between two lines, and at least the nearer one passes through the leaf there.
   std::vector<float> slopes(stride_ * static_cast<std::size_t>(rows_.across), 0.0f);
   parallelChunks(along, 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = 0; j < across; ++j)

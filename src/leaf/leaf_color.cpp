@@ -65,7 +65,9 @@ void paintLeaf(const BladeFields& fields, const Blemishes& blemishes, const Leaf
       // The midrib's foot still has the stalk's colours.
       const float thick =
           glm::smoothstep(0.35f, 0.85f, fields.ridge.height[i] / fields.stalk_radius);
-      pigments = mix(pigments, species.stalk, std::max(1 - blade, 0.7f * thick));
+      Pigments stalk = species.stalk;
+      stalk.chlorophyll *= 1 - 0.8f * glm::smoothstep(0.65f, 1.0f, options.age);
+      pigments = mix(pigments, stalk, std::max(1 - blade, 0.7f * thick));
       pigments.tannin += vein * blade * (0.03f + 0.22f * turned);
 
       // Dead tissue: brown, darker where it borders on the living.

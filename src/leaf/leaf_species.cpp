@@ -152,7 +152,7 @@ LeafSpecies japaneseMaple() {
   s.quilt_reach_mm = 1.8f;
   // A red-leaved form, as the tree.
   s.spring = {0.16f, 0.35f, 0.95f, 0};
-  s.summer = {0.55f, 0.14f, 1.05f, 0};
+  s.summer = {0.42f, 0.12f, 1.10f, 0};
   s.autumn = {0.0f, 0.75f, 0.90f, 0};
   s.stalk = {0.22f, 0.25f, 0.95f, 0.12f};
   s.back_path = 0.84f;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <limits>
 #include <numbers>
 
 #include "base/check.h"
@@ -19,27 +19,19 @@ namespace {
 
 constexpr std::size_t kChunk = 16 * kPlaneLanes;
 
-/// The mean albedo of both sides is the mean diffuse reflection of (3.4), unless it is given.
+/// rho_d of (3.4). Checks set and options, because it is what is asked first.
 double surfaceReflection(const LeafSet& set, const LeafBakeOptions& options) {
-  checkLeafSet(set, set.name.empty() ? "leaf" : set.name);
+  const std::string where = set.name.empty() ? "leaf" : set.name;
+  checkLeafSet(set, where);
+  if (std::none_of(set.opacity.begin(), set.opacity.end(), [](float o) { return o >= 0.5f; }))
+    throw Error(where, "the opacity shows no leaf", "mend its opacity map");
   if (options.directions < 16 || options.directions > 65536)
-    throw Error("--directions", fmt::format("{} directions", options.directions),
-                "give 16 to 65536");
-  if (options.surface_reflection) {
-    const float rho = *options.surface_reflection;
-    if (!(rho >= 0 && rho < 1))
-      throw Error("--surface-reflection", fmt::format("is {:g}", rho), "give a number in [0, 1)");
-    return double{rho};
-  }
-  double sum = 0;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < set.texelCount(); ++i) {
-    if (set.opacity[i] < 0.5f) continue;
-    sum += double{glm::dot(set.front.albedo[i] + set.back.albedo[i], options.wavelength)};
-    ++count;
-  }
-  if (count == 0) throw Error(set.name, "the opacity shows no leaf", "mend its opacity map");
-  return std::min(sum / (2.0 * static_cast<double>(count)), 0.99);
+    throw Error("--directions", fmt::format("is {}", options.directions), "give 16 to 65536");
+  if (!options.surface_reflection) return insideReflection(double{set.optics.refractive_index});
+  const float rho = *options.surface_reflection;
+  if (!(rho >= 0 && rho < 1))
+    throw Error("--surface-reflection", fmt::format("is {:g}", rho), "give a number in [0, 1)");
+  return double{rho};
 }
 
 /// Least and most of a plane where there is leaf.

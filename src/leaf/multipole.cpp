@@ -5,6 +5,20 @@
 
 namespace verdure {
 
+double insideReflection(double index) {
+  // From outside there is no critical angle, and no kink; the way through is the same both ways.
+  constexpr int kSteps = 2000;
+  double outside = 0.0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double cosine = (i + 0.5) / kSteps;
+    const double inner = std::sqrt(1.0 - (1.0 - cosine * cosine) / (index * index));
+    const double s = (cosine - index * inner) / (cosine + index * inner);
+    const double p = (index * cosine - inner) / (index * cosine + inner);
+    outside += (s * s + p * p) * cosine / kSteps;
+  }
+  return 1.0 - (1.0 - outside) / (index * index);
+}
+
 Multipole::Multipole(const LeafOptics& optics, double reflection, int pairs) : pairs_(pairs) {
   const double absorption = double{optics.absorption_per_mm};
   const double scattering = (1.0 - double{optics.anisotropy}) * double{optics.scattering_per_mm};

@@ -5,6 +5,10 @@
 
 namespace verdure {
 
+/// Share of even light inside that a rough surface of that refractive index (at least 1) throws
+/// back: Fresnel's reflectance, averaged over the hemisphere.
+double insideReflection(double index);
+
 /// Light through a slab: Donner and Jensen, "Light Diffusion in Multi-Layered Translucent
 /// Materials", 2005, as (3.3) to (3.8) of Habel 2009 state it, with the misplaced parenthesis of
 /// (3.8) put right. Lengths in mm.

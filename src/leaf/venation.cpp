@@ -331,7 +331,7 @@ class Growth {
         const float length = glm::length(d);
         if (length <= 0 || length > reach) return;
         const float turn = 1 - glm::dot(d, heading) / length;
-        if (turn > 0.7f || length * (1 + turn) >= best) return;
+        if (turn > (nodes_[id].order < 3 ? 1.2f : 0.7f) || length * (1 + turn) >= best) return;
         if (std::find(own.begin(), own.end(), other) != own.end()) return;
         best = length * (1 + turn);
         target = other;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <glm/glm.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,10 @@ struct LeafSet {
 /// Throws Error, naming `where`, unless all maps have the set's size and all values lie in their
 /// ranges.
 void checkLeafSet(const LeafSet& set, const std::string& where);
+
+/// Several leaves as one set, in rows from the top: an atlas for a plant. All must have one size and
+/// scale; the optics are the first one's. Throws Error.
+LeafSet tileLeaves(std::span<const LeafSet> leaves, int columns);
 
 }  // namespace verdure
 

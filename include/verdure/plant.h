@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,22 @@
 namespace verdure {
 
 enum class AlphaMode { kOpaque, kMask, kBlend };
+
+/// What is known of a leaf's two sides beyond base colour and normal map, which are the front's
+/// (Habel 2009, chapter 3). Indices into Plant::textures, all of one size and read at the same
+/// places as those.
+struct LeafTextures {
+  int back_color = -1;          ///< albedo of the back, sRGB
+  int back_normal = -1;         ///< as normal_texture, but blue is out of the back
+  int front_translucency = -1;  ///< rho_t: colour of light that leaves the front, sRGB
+  int back_translucency = -1;   ///< of light that leaves the back
+  /// Coefficients of the Half-Life 2 basis (shared/leaf_basis.h) of light that leaves each side:
+  /// offset + scale * texel.
+  int front_light = -1, back_light = -1;
+  float front_scale = 1.0f, front_offset = 0.0f, back_scale = 1.0f, back_offset = 0.0f;
+  /// Cook and Torrance's m of each side's gloss, 0 = none, and its refractive index (LeafOptics).
+  float front_roughness = 0.3f, back_roughness = 0.0f, refractive_index = 1.45f;
+};
 
 /// How a surface looks, in the terms of glTF that verdure uses.
 struct Material {
@@ -28,6 +45,7 @@ struct Material {
   AlphaMode alpha_mode = AlphaMode::kOpaque;
   float alpha_cutoff = 0.5f;
   bool double_sided = false;
+  std::optional<LeafTextures> leaf = {};  ///< of foliage only
 };
 
 struct Texture {

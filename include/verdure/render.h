@@ -45,6 +45,14 @@ enum class ShadowSource {
   kDepthOrdered,
 };
 
+/// What leaves do with light.
+enum class LeafModel {
+  kColor,  ///< what their colour lets guess (shared/leaf.h): for all leaves without LeafTextures
+  /// By their maps, but light that gets through leaves evenly: (3.24) of Habel 2009, to compare
+  kDiffuse,
+  kMaps,  ///< by their maps: light through them as it falls on the other side's relief, (3.23)
+};
+
 /// The terms of illumination model (1) of Luft et al. 2007, each with its switch, and light through
 /// leaves.
 struct Terms {
@@ -61,6 +69,7 @@ struct Terms {
   bool scattering = false;
   /// Leaves and wood mirror the sky dimly; what they mirror is missing below (shared/gloss.h).
   bool gloss = false;
+  LeafModel leaf = LeafModel::kColor;
 };
 
 /// Published combinations: "standard" (leaf normals, constant ambient), "expressive" (Luft: crown

@@ -207,6 +207,7 @@ struct FiguresCommand {
 };
 void runLuftFigures(const FiguresCommand& command);
 void runGumbauFigures(const FiguresCommand& command);
+void runLeafFigures(const FiguresCommand& command);
 
 struct FidelityCommand {
   std::string output = "fidelity";

@@ -359,7 +359,7 @@ int run(int argc, char** argv) {
   sky_app->add_option("--report", sky.report, "Folder for the fit's errors and pictures");
   sky_app->add_flag("--json", sky.json, "Print JSON, with the harmonics' weights");
 
-  FiguresCommand luft, gumbau;
+  FiguresCommand luft, gumbau, leaf_figures;
   CLI::App* figures_app = app.add_subcommand("figures", "Reproduce the figures of a paper");
   const auto add_figures = [figures_app](const char* name, const char* help,
                                          FiguresCommand& figures) {
@@ -374,6 +374,8 @@ int run(int argc, char** argv) {
   CLI::App* luft_app = add_figures("luft", "Luft, Balzer, Deussen 2007: 1 to 6", luft);
   CLI::App* gumbau_app =
       add_figures("gumbau", "Gumbau, Chover, Rebollo, Remolar 2008: 1 to 5", gumbau);
+  CLI::App* leaf_figures_app =
+      add_figures("leaf", "Habel 2009, chapter 3: 3.9 to 3.19", leaf_figures);
   SkyReport sky_figures;
   CLI::App* habel_app = figures_app->add_subcommand("sky", "Habel 2009: 5.3 to 5.7");
   habel_app->add_option("-o,--output", sky_figures.folder, "Folder to write")
@@ -416,7 +418,7 @@ int run(int argc, char** argv) {
             help);
   if (*figures_app && figures_app->get_subcommands().empty())
     throw Error("figures", "no paper is named",
-                "use luft, gumbau or sky; see verdure figures --help");
+                "use luft, gumbau, leaf or sky; see verdure figures --help");
   if (*report_app && !*fidelity_app)
     throw Error("report", "nothing is named", "use fidelity; see verdure report --help");
   if (*leaf_app && leaf_app->get_subcommands().empty())
@@ -443,6 +445,7 @@ int run(int argc, char** argv) {
   if (*sky_app) runSky(sky);
   if (*luft_app) runLuftFigures(luft);
   if (*gumbau_app) runGumbauFigures(gumbau);
+  if (*leaf_figures_app) runLeafFigures(leaf_figures);
   if (*habel_app) writeSkyReport(sky_figures);
   if (*fidelity_app) runFidelityReport(fidelity);
   return 0;

@@ -70,30 +70,46 @@ Buffer Upload::bufferBytes(std::span<const std::byte> data, vk::BufferUsageFlags
 }
 
 Texture Upload::texture(std::span<const MipLevel> mips, vk::Format format) {
-  VERDURE_CHECK_LT(std::size_t{0}, mips.size());
+  return layered({&mips, 1}, false, format);
+}
+
+Texture Upload::textureArray(std::span<const std::vector<MipLevel>> layers, vk::Format format) {
+  const std::vector<std::span<const MipLevel>> spans(layers.begin(), layers.end());
+  return layered(spans, true, format);
+}
+
+Texture Upload::layered(std::span<const std::span<const MipLevel>> layers, bool array,
+                        vk::Format format) {
+  VERDURE_CHECK_LT(std::size_t{0}, layers.size());
+  VERDURE_CHECK_LT(std::size_t{0}, layers[0].size());
   using UsageBit = vk::ImageUsageFlagBits;
-  Texture target = makeTexture(*device_, {.format = format,
-                                          .width = mips[0].width,
-                                          .height = mips[0].height,
-                                          .mips = static_cast<std::uint32_t>(mips.size()),
-                                          .usage = UsageBit::eSampled | UsageBit::eTransferDst});
+  Texture target =
+      makeTexture(*device_, {.format = format,
+                             .width = layers[0][0].width,
+                             .height = layers[0][0].height,
+                             .mips = static_cast<std::uint32_t>(layers[0].size()),
+                             .layers = static_cast<std::uint32_t>(array ? layers.size() : 0),
+                             .usage = UsageBit::eSampled | UsageBit::eTransferDst});
   std::size_t bytes = 0;
-  for (const MipLevel& mip : mips) bytes += mip.rgba.size();
+  for (const auto& mips : layers)
+    for (const MipLevel& mip : mips) bytes += mip.rgba.size();
   Copy copy{.staging = makeBuffer(*device_, bytes, vk::BufferUsageFlagBits::eTransferSrc,
                                   MemoryUse::kToGpu),
             .image = *target.image};
   std::size_t offset = 0;
-  for (std::uint32_t level = 0; level < mips.size(); ++level) {
-    const MipLevel& mip = mips[level];
-    VERDURE_CHECK_EQ(mip.rgba.size(), std::size_t{mip.width} * mip.height * 4);
-    std::memcpy(copy.staging.memory.mapped() + offset, mip.rgba.data(), mip.rgba.size());
-    copy.regions.push_back({.bufferOffset = offset,
-                            .imageSubresource = {.aspectMask = vk::ImageAspectFlagBits::eColor,
-                                                 .mipLevel = level,
-                                                 .layerCount = 1},
-                            .imageExtent = {mip.width, mip.height, 1}});
-    offset += mip.rgba.size();
-  }
+  for (std::uint32_t layer = 0; layer < layers.size(); ++layer)
+    for (std::uint32_t level = 0; level < layers[0].size(); ++level) {
+      const MipLevel& mip = layers[layer][level];
+      VERDURE_CHECK_EQ(mip.rgba.size(), std::size_t{mip.width} * mip.height * 4);
+      std::memcpy(copy.staging.memory.mapped() + offset, mip.rgba.data(), mip.rgba.size());
+      copy.regions.push_back({.bufferOffset = offset,
+                              .imageSubresource = {.aspectMask = vk::ImageAspectFlagBits::eColor,
+                                                   .mipLevel = level,
+                                                   .baseArrayLayer = layer,
+                                                   .layerCount = 1},
+                              .imageExtent = {mip.width, mip.height, 1}});
+      offset += mip.rgba.size();
+    }
   copies_.push_back(std::move(copy));
   return target;
 }

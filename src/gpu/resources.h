@@ -59,6 +59,8 @@ class Upload {
   }
   /// A new texture of 4 x 8 bits with these mips, largest first, ready for fragment shaders.
   Texture texture(std::span<const MipLevel> mips, vk::Format format);
+  /// The same as an array of layers, each with its mips, all of one size.
+  Texture textureArray(std::span<const std::vector<MipLevel>> layers, vk::Format format);
   /// Submits all copies and waits.
   void finish();
 
@@ -69,6 +71,7 @@ class Upload {
     vk::Image image = {};    ///< target
     std::vector<vk::BufferImageCopy> regions = {};
   };
+  Texture layered(std::span<const std::span<const MipLevel>> layers, bool array, vk::Format format);
   Buffer bufferBytes(std::span<const std::byte> data, vk::BufferUsageFlags usage);
 
   const Device* device_;

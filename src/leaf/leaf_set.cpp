@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -68,6 +69,49 @@ void checkLeafSet(const LeafSet& set, const std::string& where) {
   for (std::size_t i = 0; i < set.thickness_mm.size(); ++i)
     if (set.opacity[i] > 0.5f && !(set.thickness_mm[i] > 0))
       throw Error(where, "the leaf is 0 mm thick somewhere", "mend its thickness map");
+}
+
+LeafSet tileLeaves(std::span<const LeafSet> leaves, int columns) {
+  const std::string where = "an atlas of leaves";
+  if (leaves.empty() || columns < 1) throw Error(where, "has no leaves", "give it at least one");
+  for (const LeafSet& leaf : leaves) {
+    checkLeafSet(leaf, leaf.name);
+    if (leaf.width != leaves[0].width || leaf.height != leaves[0].height ||
+        leaf.mm_per_texel != leaves[0].mm_per_texel)
+      throw Error(where, "has leaves of different sizes or scales", "give them one of each");
+  }
+  const int rows = (static_cast<int>(leaves.size()) + columns - 1) / columns;
+  LeafSet atlas;
+  atlas.name = leaves[0].name;
+  atlas.width = columns * leaves[0].width;
+  atlas.height = rows * leaves[0].height;
+  atlas.mm_per_texel = leaves[0].mm_per_texel;
+  atlas.optics = leaves[0].optics;
+  const auto tile = [&](const auto& map_of, auto empty) {
+    std::vector<decltype(empty)> out(atlas.texelCount(), empty);
+    for (std::size_t k = 0; k < leaves.size(); ++k) {
+      const std::vector<decltype(empty)>& map = map_of(leaves[k]);
+      const int x0 = static_cast<int>(k) % columns * leaves[0].width;
+      const int y0 = static_cast<int>(k) / columns * leaves[0].height;
+      for (int y = 0; y < leaves[0].height; ++y)
+        std::copy_n(map.begin() + std::ptrdiff_t{y} * leaves[0].width, leaves[0].width,
+                    out.begin() + std::ptrdiff_t{y0 + y} * atlas.width + x0);
+    }
+    return out;
+  };
+  for (const auto side : {&LeafSet::front, &LeafSet::back}) {
+    const auto of = [side](const auto map) {
+      return [side, map](const LeafSet& leaf) -> const auto& { return (leaf.*side).*map; };
+    };
+    LeafSide& out = atlas.*side;
+    out.albedo = tile(of(&LeafSide::albedo), glm::vec3(0.0f));
+    out.translucency = tile(of(&LeafSide::translucency), glm::vec3(0.0f));
+    out.normal = tile(of(&LeafSide::normal), glm::vec3(0, 0, 1));
+    out.relief_mm = tile(of(&LeafSide::relief_mm), 0.0f);
+  }
+  atlas.thickness_mm = tile([](const LeafSet& l) -> const auto& { return l.thickness_mm; }, 0.0f);
+  atlas.opacity = tile([](const LeafSet& l) -> const auto& { return l.opacity; }, 0.0f);
+  return atlas;
 }
 
 }  // namespace verdure

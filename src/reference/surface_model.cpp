@@ -144,10 +144,11 @@ glm::vec3 SurfaceModel::mappedNormal(const RayHit& hit, const glm::vec2& uv,
   const glm::mat3 world(worlds_[hit.item][hit.instance]);
   const glm::vec3 origin = mesh.positions[corner[0]];
   const glm::vec2 uv_origin = mesh.uvs[corner[0]];
-  return shared::mappedNormal(normal, world * (mesh.positions[corner[1]] - origin),
-                              world * (mesh.positions[corner[2]] - origin),
-                              mesh.uvs[corner[1]] - uv_origin, mesh.uvs[corner[2]] - uv_origin,
-                              entry.map->data(uv), entry.scale);
+  return shared::mappedNormal(
+      shared::textureFrame(normal, world * (mesh.positions[corner[1]] - origin),
+                           world * (mesh.positions[corner[2]] - origin),
+                           mesh.uvs[corner[1]] - uv_origin, mesh.uvs[corner[2]] - uv_origin),
+      entry.map->data(uv), entry.scale);
 }
 
 glm::vec3 SurfaceModel::groundReflectance(const glm::vec3& position) const {

@@ -30,6 +30,7 @@ vk::raii::DescriptorSetLayout makeMaterialSet(const gpu::Device& device) {
   using Type = vk::DescriptorType;
   return gpu::makeSetLayout(device,
                             std::array{Type::eCombinedImageSampler, Type::eCombinedImageSampler,
+                                       Type::eCombinedImageSampler, Type::eCombinedImageSampler,
                                        Type::eCombinedImageSampler},
                             vk::ShaderStageFlagBits::eFragment);
 }

@@ -19,7 +19,7 @@ struct FrameLayout {
   explicit FrameLayout(const gpu::Device& device);
 
   gpu::SetLayout frame_set;                    ///< as in src/shaders/frame_set.glsl
-  vk::raii::DescriptorSetLayout material_set;  ///< base colour, normal map, thickness
+  vk::raii::DescriptorSetLayout material_set;  ///< as in src/shaders/plant_pass.frag
   vk::raii::PipelineLayout pipeline;           ///< both sets and DrawUniforms
 };
 

@@ -29,6 +29,9 @@ GpuScene::GpuScene(const gpu::Device& device, const PackedScene& packed,
     textures_.push_back(upload.texture(packed.textures[i].levels, packed.texture_is_linear[i]
                                                                       ? vk::Format::eR8G8B8A8Unorm
                                                                       : vk::Format::eR8G8B8A8Srgb));
+  for (const PackedLeafArray& leaf : packed.leaf_arrays)
+    leaf_arrays_.push_back(upload.textureArray(
+        leaf.layers, leaf.linear ? vk::Format::eR8G8B8A8Unorm : vk::Format::eR8G8B8A8Srgb));
   upload.finish();
 
   for (int clamp = 0; clamp < 4; ++clamp) {
@@ -49,7 +52,7 @@ GpuScene::GpuScene(const gpu::Device& device, const PackedScene& packed,
   if (packed.materials.empty()) return;
   const auto count = static_cast<std::uint32_t>(packed.materials.size());
   const vk::DescriptorPoolSize size{.type = vk::DescriptorType::eCombinedImageSampler,
-                                    .descriptorCount = 3 * count};
+                                    .descriptorCount = 5 * count};
   pool_ = device.raii().createDescriptorPool(
       {.flags = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
        .maxSets = count,
@@ -62,17 +65,22 @@ GpuScene::GpuScene(const gpu::Device& device, const PackedScene& packed,
           .descriptorPool = *pool_, .descriptorSetCount = count, .pSetLayouts = layouts.data()});
   for (std::uint32_t i = 0; i < count; ++i) {
     const MaterialSlot& slot = packed.materials[i];
-    const auto describe = [&](std::uint32_t texture, const std::array<bool, 2>& clamp) {
+    const auto describe = [&](const gpu::Texture& texture, const std::array<bool, 2>& clamp) {
       return vk::DescriptorImageInfo{
           .sampler = *samplers_[(clamp[0] ? 1u : 0u) + (clamp[1] ? 2u : 0u)],
-          .imageView = *textures_[texture].view,
+          .imageView = *texture.view,
           .imageLayout = vk::ImageLayout::eShaderReadOnlyOptimal};
     };
-    const vk::DescriptorImageInfo base = describe(slot.base_color, slot.base_clamp);
-    const vk::DescriptorImageInfo normal = describe(slot.normal_map, slot.normal_clamp);
-    const vk::DescriptorImageInfo thickness = describe(slot.thickness_map, slot.thickness_clamp);
+    const vk::DescriptorImageInfo base = describe(textures_[slot.base_color], slot.base_clamp);
+    const vk::DescriptorImageInfo normal = describe(textures_[slot.normal_map], slot.normal_clamp);
+    const vk::DescriptorImageInfo thickness =
+        describe(textures_[slot.thickness_map], slot.thickness_clamp);
+    const vk::DescriptorImageInfo colors =
+        describe(leaf_arrays_[slot.leaf_colors], slot.base_clamp);
+    const vk::DescriptorImageInfo vectors =
+        describe(leaf_arrays_[slot.leaf_vectors], slot.base_clamp);
     std::vector<vk::WriteDescriptorSet> writes;
-    for (const vk::DescriptorImageInfo* info : {&base, &normal, &thickness})
+    for (const vk::DescriptorImageInfo* info : {&base, &normal, &thickness, &colors, &vectors})
       writes.push_back({.dstSet = *material_sets_[i],
                         .dstBinding = static_cast<std::uint32_t>(writes.size()),
                         .descriptorCount = 1,

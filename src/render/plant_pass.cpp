@@ -26,7 +26,8 @@ gpu::Constants constantsOf(const Draw& draw, const Terms& terms) {
                         .normal_map = draw.normal_map,
                         .foliage = draw.foliage,
                         .scattering = draw.foliage && terms.scattering,
-                        .thickness_map = draw.foliage && terms.scattering && draw.thickness_map});
+                        .thickness_map = draw.foliage && terms.scattering && draw.thickness_map,
+                        .leaf = draw.leaf_maps && terms.textures ? terms.leaf : LeafModel::kColor});
 }
 
 /// Two vertex layouts: see GpuScene::bindings().

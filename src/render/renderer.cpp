@@ -28,12 +28,18 @@ const std::vector<Preset>& presets() {
         .shadow_source = ShadowSource::kDepthLayers,
         .transmission = true,
         .scattering = true}},
+      {"habel",
+       {.normal = NormalSource::kLeaf,
+        .ambient_source = AmbientSource::kBaked,
+        .transmission = true,
+        .leaf = LeafModel::kMaps}},
       {"best",
        {.normal = NormalSource::kLeaf,
         .ambient_source = AmbientSource::kTransfer,
         .shadow_source = ShadowSource::kDepthOrdered,
         .transmission = true,
-        .gloss = true}}};
+        .gloss = true,
+        .leaf = LeafModel::kMaps}}};
   return all;
 }
 

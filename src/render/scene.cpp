@@ -28,6 +28,8 @@ class Packer {
       std::copy_n(texel, 4, image.rgba.begin());
       out_.textures.push_back(texel == white ? buildColorMips(image, {}) : buildLinearMips(image));
       out_.texture_is_linear.push_back(texel == flat);
+      std::vector<gpu::MipLevel>& levels = out_.textures.back().levels;
+      out_.leaf_arrays.push_back({{levels, levels, levels}, texel == flat});
     }
   }
 
@@ -222,6 +224,7 @@ class Packer {
       slot.thickness_map = addTexture({&texture.image, TextureJob::Kind::kLinear, 0.0f});
       slot.thickness_clamp = {texture.clamp_u, texture.clamp_v};
     }
+    if (draw.foliage && textured && material.leaf) describeLeaf(plant, material, draw, slot);
     draw.material = addMaterial(slot);
     const glm::vec3 mean = out_.textures[slot.base_color].mean_color;
     draw.uniforms.color = material.base_color;
@@ -230,6 +233,40 @@ class Packer {
     draw.uniforms.surface = glm::vec4(cutoff, material.normal_scale,
                                       draw.foliage ? look::kLeafGlossWidth : look::kWoodGlossWidth,
                                       draw.foliage ? look::kLeafExponent : look::kWoodExponent);
+  }
+
+  void describeLeaf(const Plant& plant, const Material& material, Draw& draw, MaterialSlot& slot) {
+    const LeafTextures& maps = *material.leaf;
+    draw.leaf_maps = true;
+    slot.leaf_colors = addLeafArray(
+        plant, material, {maps.back_color, maps.front_translucency, maps.back_translucency}, false);
+    slot.leaf_vectors =
+        addLeafArray(plant, material, {maps.back_normal, maps.front_light, maps.back_light}, true);
+    draw.uniforms.leaf_light =
+        glm::vec4(maps.front_scale, maps.front_offset, maps.back_scale, maps.back_offset);
+    draw.uniforms.leaf_gloss =
+        glm::vec4(maps.front_roughness, maps.back_roughness, maps.refractive_index, 0.0f);
+  }
+
+  std::uint32_t addLeafArray(const Plant& plant, const Material& material,
+                             const std::array<int, 3>& textures, bool linear) {
+    std::array<const Image*, 3> images;
+    for (std::size_t k = 0; k < 3; ++k) {
+      images[k] = &textureOf(plant, textures[k]).image;
+      if (images[k]->width != images[0]->width || images[k]->height != images[0]->height)
+        throw Error(plant.name + ", material " + material.name,
+                    "the maps of its leaves have different sizes", "give them one size");
+    }
+    const auto [entry, is_new] =
+        known_leaves_.try_emplace(images, static_cast<std::uint32_t>(out_.leaf_arrays.size()));
+    if (is_new) {
+      PackedLeafArray packed{{}, linear};
+      for (std::size_t k = 0; k < 3; ++k)
+        packed.layers[k] =
+            (linear ? buildLinearMips(*images[k]) : buildColorMips(*images[k], {})).levels;
+      out_.leaf_arrays.push_back(std::move(packed));
+    }
+    return entry->second;
   }
 
   std::uint32_t addTexture(const TextureJob& job) {
@@ -259,6 +296,7 @@ class Packer {
   glm::dvec4 leaf_tint_{0.0};  // sum over the foliage's indices; w = their number
   std::map<TextureJob, UsedTexels> used_;
   std::map<TextureJob, std::uint32_t> known_textures_;
+  std::map<std::array<const Image*, 3>, std::uint32_t> known_leaves_;
 };
 
 }  // namespace

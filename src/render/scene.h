@@ -34,7 +34,8 @@ struct Draw {
   bool alpha_test = false;
   bool normal_map = false;
   bool thickness_map = false;
-  bool seen = true;  ///< else it is drawn into the shadow map alone
+  bool leaf_maps = false;  ///< of its material
+  bool seen = true;        ///< else it is drawn into the shadow map alone
   std::uint32_t index_count = 0, first_index = 0;
   std::int32_t vertex_offset = 0;
   std::uint32_t instance_count = 0, first_instance = 0;
@@ -57,10 +58,18 @@ struct MaterialSlot {
   std::uint32_t base_color = 0;
   std::uint32_t normal_map = 0;
   std::uint32_t thickness_map = 0;
-  std::array<bool, 2> base_clamp{};  ///< u, v
+  std::uint32_t leaf_colors = 0, leaf_vectors = 0;  ///< into PackedScene::leaf_arrays
+  std::array<bool, 2> base_clamp{};                 ///< u, v
   std::array<bool, 2> normal_clamp{};
   std::array<bool, 2> thickness_clamp{};
   auto operator<=>(const MaterialSlot&) const = default;
+};
+
+/// Three of a leaf's maps as layers of one texture. Colours: the back's albedo, translucency of the
+/// front and of the back. Vectors: the back's normals, coefficients of the front and of the back.
+struct PackedLeafArray {
+  std::array<std::vector<gpu::MipLevel>, 3> layers;
+  bool linear = false;
 };
 
 /// The transfer vectors of the ground around a plant, and where such plants stand.
@@ -82,6 +91,7 @@ struct PackedScene {
   std::vector<MipChain> textures;
   std::vector<bool> texture_is_linear;
   std::vector<MaterialSlot> materials;
+  std::vector<PackedLeafArray> leaf_arrays;  ///< the first two stand in where there are none
   std::vector<PackedTransfer> transfers;
   std::vector<PackedGround> grounds;
   Bounds bounds;  ///< of all instances
@@ -95,7 +105,8 @@ struct PackedScene {
 PackedScene packScene(const Scene& scene);
 
 /// A packed scene on the GPU, with a descriptor set for each material (set 1: base colour, normal
-/// map, thickness).
+/// map, thickness, colours and
+/// vectors of leaves).
 class GpuScene {
  public:
   GpuScene(const gpu::Device& device, const PackedScene& packed,
@@ -124,7 +135,7 @@ class GpuScene {
  private:
   gpu::Buffer positions_, leaf_normals_, crown_normals_, uvs_, indices_, instances_;
   bool has_crown_normals_ = false;
-  std::vector<gpu::Texture> textures_;
+  std::vector<gpu::Texture> textures_, leaf_arrays_;
   std::vector<vk::raii::Sampler> samplers_;  ///< [clamp_u + 2 clamp_v]
   vk::raii::DescriptorPool pool_ = nullptr;
   std::vector<vk::raii::DescriptorSet> material_sets_;

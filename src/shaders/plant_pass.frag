@@ -1,9 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame_set.glsl"
+#include "shared/cook_torrance.h"
 #include "shared/gloss.h"
 #include "shared/illumination.h"
 #include "shared/leaf.h"
+#include "shared/leaf_basis.h"
 #include "shared/leaf_visibility.h"
 #include "shared/normal_map.h"
 #include "shared/sh.h"
@@ -14,6 +16,10 @@
 layout(set = 1, binding = 0) uniform sampler2D base_color;
 layout(set = 1, binding = 1) uniform sampler2D normal_map;
 layout(set = 1, binding = 2) uniform sampler2D thickness_map;
+// Of leaves; layer 0 is the back's albedo and normals, 1 and 2 are light through the leaf that leaves
+// the front and the back: its colour, and its coefficients.
+layout(set = 1, binding = 3) uniform sampler2DArray leaf_colors;
+layout(set = 1, binding = 4) uniform sampler2DArray leaf_vectors;
 layout(push_constant) uniform DrawBlock { DrawUniforms draw; };
 
 // Centroid: where a covered sample lies. At the edge of a small leaf the pixel's centre is outside,
@@ -28,7 +34,10 @@ layout(location = 5) centroid in vec3 back_light;
 /// Of the triangle: that of its first corner.
 layout(location = 6) flat in uint seed;
 layout(location = 7) centroid in vec2 visibility_of_sides;
+layout(location = 8) flat in uint mirrored;
 layout(location = 0) out vec4 out_color;
+
+const bool kLeafHasMaps = kLeafModel != kLeafColor;
 
 /// PCG's output hash.
 uint scrambled(uint value) {
@@ -94,17 +103,36 @@ void main() {
   } else {
     gl_SampleMask[0] = 15;
   }
+  bool front = gl_FrontFacing == (mirrored == 0u);  // of the leaf
+  if (kLeafHasMaps && !front)
+    texel.rgb = textureGrad(leaf_colors, vec3(covered_uv, 0.0), uv_x, uv_y).rgb;
   vec3 color = kTextures ? texel.rgb * draw.color.rgb : draw.matt.rgb;
 
   // Opposite normals of neighbouring vertices cancel somewhere between them.
   vec3 n = dot(in_normal.xyz, in_normal.xyz) > 1e-12 ? normalize(in_normal.xyz) : vec3(0, 1, 0);
   if (kFlipNormal && !gl_FrontFacing) n = -n;
-  if (kNormalMap && kTextures) {
-    vec3 texel_n = textureGrad(normal_map, uv, uv_x, uv_y).xyz;
-    n = mappedNormal(n, p_x, p_y, uv_x, uv_y, texel_n, draw.surface.y);
-  }
+  mat3 side = textureFrame(n, p_x, p_y, uv_x, uv_y);  // that is seen
+  if (kLeafHasMaps && !front)
+    n = mappedNormal(side, textureGrad(leaf_vectors, vec3(uv, 0.0), uv_x, uv_y).xyz,
+                     draw.surface.y);
+  else if (kNormalMap && kTextures)
+    n = mappedNormal(side, textureGrad(normal_map, uv, uv_x, uv_y).xyz, draw.surface.y);
   vec3 l = frame.to_sun.xyz;
   vec3 v = normalize(frame.eye.xyz - position);
+
+  // Light through the leaf: its colour and, as a vector, where it comes from.
+  vec3 k_t = kLeafHasMaps || !kTransmission ? vec3(0.0) : leafTransmittance(color);
+  vec3 through = vec3(0.0);
+  float even = 1.0;
+  if (kLeafHasMaps && kTransmission) {
+    float layer = front ? 1.0 : 2.0;
+    vec2 range = front ? draw.leaf_light.xy : draw.leaf_light.zw;
+    vec3 h = textureGrad(leaf_vectors, vec3(uv, layer), uv_x, uv_y).rgb * range.x + range.y;
+    k_t = textureGrad(leaf_colors, vec3(covered_uv, layer), uv_x, uv_y).rgb;
+    even = leafEvenDirection(h).z;
+    vec3 q = kLeafModel == kLeafMaps ? leafDirection(h) : vec3(0.0, 0.0, even);
+    through = side * vec3(q.x, q.y, -q.z);
+  }
 
   // The light on the side that is seen, and on the other.
   vec3 near = vec3(0.0), beyond = vec3(0.0);
@@ -119,16 +147,22 @@ void main() {
       if (kAmbientSource == kLeafVisibility)
         k_a = visibilityShares(visibility_of_sides, gl_FrontFacing, frame.open_sky.w);
       near = shIrradiance(n, frame.open_light) * k_a.x;
-      if (kTransmission) beyond = shIrradiance(-n, frame.open_light) * k_a.y;
+      if (kTransmission)
+        beyond = k_a.y * (kLeafHasMaps ? shIrradianceAlong(-side[2], through, frame.open_light)
+                                       : shIrradiance(-n, frame.open_light));
     }
   }
   vec3 ambient = near * color;
   vec3 diffuse = kDiffuse ? color * diffuseFactor(n, l) : vec3(0.0);
   if (kScattering) diffuse *= scatteredInLeaf(color, uv_x, uv_y);
+  // Bumps that face a sun behind the leaf's plane are in its shade.
+  float risen = kLeafHasMaps ? clamp(1.0 + 4.0 * dot(side[2], l), 0.0, 1.0) : 1.0;
+  diffuse *= risen;
   if (kTransmission) {
-    vec3 k_t = leafTransmittance(color);
-    ambient += beyond * k_t;
-    if (kDiffuse) diffuse += k_t * diffuseFactor(-n, l);
+    bool summed = kLeafHasMaps && (kAmbientSource == kConstant || kAmbientSource == kTransfer);
+    ambient += beyond * k_t * (summed ? even : 1.0);
+    if (kDiffuse) diffuse += k_t * (kLeafHasMaps ? max(dot(through, l), 0.0)
+                                                 : diffuseFactor(-n, l));
   }
   if (kGloss) {
     float mirrored = glossReflected(draw.surface.z, max(dot(n, v), 0.0));
@@ -136,7 +170,15 @@ void main() {
     diffuse *= 1.0 - mirrored;
     if (kAmbient) ambient += mirrored * mirroredLight(reflect(-v, n), n, near, in_normal.w);
   }
-  float specular = kSpecular ? specularFactor(n, l, v, draw.surface.w) : 0.0;
+  float k_s = highlightStrength(draw.surface.z), specular = 0.0;
+  if (kSpecular && kLeafHasMaps) {
+    float roughness = front ? draw.leaf_gloss.x : draw.leaf_gloss.y;
+    if (roughness > 0.0)
+      specular = risen * cookTorrance(n, l, v, roughness, draw.leaf_gloss.z);
+    k_s = 1.0;
+  } else if (kSpecular) {
+    specular = specularFactor(n, l, v, draw.surface.w);
+  }
   vec3 visibility = vec3(1.0);
   if (kShadow && (diffuse != vec3(0.0) || specular > 0.0)) {
     vec3 face = cross(p_x, p_y);
@@ -144,6 +186,6 @@ void main() {
                                draw.leaf, false);
   }
   vec3 lit = illumination(ambient, frame.sun_light.rgb, visibility, diffuse,
-                          highlightStrength(draw.surface.z), specular);
+                          k_s, specular);
   out_color = vec4(clamp(lit, vec3(0.0), vec3(65000.0)), 1.0);
 }

@@ -19,6 +19,7 @@ layout(location = 4) centroid out vec3 out_front_light;
 layout(location = 5) centroid out vec3 out_back_light;
 layout(location = 6) flat out uint out_seed;
 layout(location = 7) centroid out vec2 out_visibility;  // by gl_FrontFacing: of true, of false
+layout(location = 8) flat out uint out_mirrored;
 
 void main() {
   vec4 decoded = decodeNormal(encoded_normal.xyz);
@@ -26,8 +27,10 @@ void main() {
   vec3 normal = worldNormal(decoded.xyz, kFlipNormal);
   out_normal = vec4(normal * inversesqrt(max(dot(normal, normal), 1e-30)), decoded.w);
   // A mirrored instance turns the triangles' winding over.
+  bool mirrored = dot(row0.xyz, cross(row1.xyz, row2.xyz)) < 0.0;
   vec2 visibility = unpackVisibility(encoded_normal.w * 32767.0);
-  out_visibility = dot(row0.xyz, cross(row1.xyz, row2.xyz)) < 0.0 ? visibility.yx : visibility;
+  out_visibility = mirrored ? visibility.yx : visibility;
+  out_mirrored = mirrored ? 1u : 0u;
   out_seed = uint(gl_VertexIndex) + uint(gl_InstanceIndex) * 0x9e3779b9u;
   out_uv = uv;
   out_covered_uv = uv;

@@ -3,7 +3,7 @@
 #include "frame_set.glsl"
 #include "instance.glsl"
 
-layout(push_constant) uniform CascadeBlock { layout(offset = 64) uint cascade; };
+layout(push_constant) uniform CascadeBlock { layout(offset = 96) uint cascade; };
 layout(location = 0) in vec3 position;
 layout(location = 2) in vec2 uv;
 layout(location = 0) out vec2 out_uv;

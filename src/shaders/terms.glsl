@@ -17,7 +17,10 @@ layout(constant_id = 13) const int kShadowSource = 0;
 layout(constant_id = 14) const bool kFoliage = false;
 layout(constant_id = 15) const bool kScattering = false;
 layout(constant_id = 16) const bool kThicknessMap = false;
+layout(constant_id = 17) const int kLeafModel = 0;
 // AmbientSource of verdure/render.h.
 const int kConstant = 0, kSky = 1, kBaked = 2, kTransfer = 3, kLeafVisibility = 4;
 // ShadowSource.
 const int kShadowMap = 0, kDepthPaper = 1, kDepthLayers = 2, kDepthOrdered = 3;
+// LeafModel.
+const int kLeafColor = 0, kLeafDiffuse = 1, kLeafMaps = 2;

@@ -18,6 +18,17 @@ SHARED_FUNCTION vec3 leafBasis(vec3 w) {
                       0.81649658f * w.x + up);
 }
 
+/// The same as a vector: light from `w` is its dot product with w. Its z is out of the lit side.
+SHARED_FUNCTION vec3 leafDirection(vec3 h) {
+  return vec3(dot(h, leafBasis(vec3(1, 0, 0))), dot(h, leafBasis(vec3(0, 1, 0))),
+              dot(h, leafBasis(vec3(0, 0, 1))));
+}
+
+/// That of a leaf that lets as much light from all around through, but scatters it evenly.
+SHARED_FUNCTION vec3 leafEvenDirection(vec3 h) {
+  return vec3(0.0f, 0.0f, 0.39894228f * (h.x + h.y + h.z));
+}
+
 /// (3.23) without colours: what of the sun's light leaves a point with coefficients `h`. `to_sun`:
 /// unit, in the frame of the side that is looked at (x right, y up in its maps, z out of it), the
 /// sun behind: to_sun.z <= 0. Single coefficients may be negative, light may not.

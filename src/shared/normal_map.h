@@ -5,23 +5,25 @@
 
 SHARED_BEGIN
 
-/// Normal map without vertex tangents: the frame follows from how position and texture coordinates
-/// change along any two directions in the surface, x and y (screen derivatives, or edges of the
-/// triangle): Schueler, "Followup: Normal Mapping Without Precomputed Tangents", 2013. glTF's maps
-/// have green up, against its v. `texel` in [0, 1]; n is unit.
-SHARED_FUNCTION vec3 mappedNormal(vec3 n, vec3 p_x, vec3 p_y, vec2 uv_x, vec2 uv_y, vec3 texel,
-                                  float scale) {
+/// The directions of a texture on a surface: to the right of the image, up in it (against glTF's v)
+/// and n, without vertex tangents: they follow from how position and texture coordinates change
+/// along any two directions in the surface, x and y (screen derivatives, or edges of the triangle):
+/// Schueler, "Followup: Normal Mapping Without Precomputed Tangents", 2013. n is unit; the longer
+/// of the other two is, too, and both are zero where texture coordinates stand still.
+SHARED_FUNCTION mat3 textureFrame(vec3 n, vec3 p_x, vec3 p_y, vec2 uv_x, vec2 uv_y) {
   vec3 x_perpendicular = cross(p_y, n), y_perpendicular = cross(n, p_x);
   float handedness = dot(p_x, x_perpendicular) < 0.0f ? -1.0f : 1.0f;
   vec3 t = (x_perpendicular * uv_x.x + y_perpendicular * uv_y.x) * handedness;
   vec3 b = (x_perpendicular * uv_x.y + y_perpendicular * uv_y.y) * -handedness;
   float longest = max(dot(t, t), dot(b, b));
-  if (longest <= 0.0f) {
-    return n;
-  }
+  float unit = longest > 0.0f ? 1.0f / sqrt(longest) : 0.0f;
+  return mat3(t * unit, b * unit, n);
+}
+
+/// Normal map, green up. `texel` in [0, 1].
+SHARED_FUNCTION vec3 mappedNormal(mat3 frame_of_texture, vec3 texel, float scale) {
   vec3 m = texel * (255.0f / 127.0f) - vec3(128.0f / 127.0f);
-  vec3 tilt = (t * m.x + b * m.y) * (scale / sqrt(longest));
-  return normalize(tilt + n * max(m.z, 0.05f));
+  return normalize(frame_of_texture * vec3(m.x * scale, m.y * scale, max(m.z, 0.05f)));
 }
 
 SHARED_END

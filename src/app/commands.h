@@ -9,6 +9,7 @@
 #include "verdure/density.h"
 #include "verdure/grow.h"
 #include "verdure/leaf_files.h"
+#include "verdure/leaf_grow.h"
 #include "verdure/optical_depth.h"
 #include "verdure/plant_io.h"
 #include "verdure/render.h"
@@ -27,6 +28,14 @@ struct GrowCommand {
   bool json = false;
 };
 void runGrow(GrowCommand command);
+
+struct LeafGrowCommand {
+  LeafGrowOptions grow;
+  std::string output;  ///< folder
+  bool list = false;
+  bool json = false;
+};
+void runLeafGrow(const LeafGrowCommand& command);
 
 struct InspectCommand {
   std::string input;

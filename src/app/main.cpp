@@ -170,6 +170,19 @@ int run(int argc, char** argv) {
   grow_app->add_flag("--json", grow.json, "Print JSON");
 
   CLI::App* leaf_app = app.add_subcommand("leaf", "Leaves as maps, and light through them");
+  LeafGrowCommand leaf_grow;
+  CLI::App* leaf_grow_app = leaf_app->add_subcommand("grow", "Grow a leaf: outline, veins, maps");
+  leaf_grow_app->add_option("-o,--output", leaf_grow.output, "Folder to write");
+  leaf_grow_app->add_option("--species", leaf_grow.grow.species, "Species, see --list")
+      ->capture_default_str();
+  leaf_grow_app->add_option("--seed", leaf_grow.grow.seed, "Each seed is another leaf")
+      ->capture_default_str();
+  leaf_grow_app->add_option("--size", leaf_grow.grow.size, "Texels a side, 16 to 8192")
+      ->capture_default_str();
+  leaf_grow_app->add_option("--age", leaf_grow.grow.age, "0 spring, 0.4 summer, 1 autumn")
+      ->capture_default_str();
+  leaf_grow_app->add_flag("--list", leaf_grow.list, "List the species");
+  leaf_grow_app->add_flag("--json", leaf_grow.json, "Print JSON");
   LeafImportCommand leaf_import;
   CLI::App* leaf_import_app =
       leaf_app->add_subcommand("import", "Make a leaf's folder of maps or of a material");
@@ -420,7 +433,7 @@ int run(int argc, char** argv) {
   if (*report_app && !*fidelity_app)
     throw Error("report", "nothing is named", "use fidelity; see verdure report --help");
   if (*leaf_app && leaf_app->get_subcommands().empty())
-    throw Error("leaf", "nothing is named", "use import or bake; see verdure leaf --help");
+    throw Error("leaf", "nothing is named", "use grow, import or bake; see verdure leaf --help");
   for (const CLI::Option* option : render_app->get_options())
     if (option->get_group() == kBakeGroup && option->count() > 0) render.bake_again = true;
   for (const char* name : {"--rho", "--tau", "--fraction", "--norm", "--grid", "--d-min", "--k-min",
@@ -432,6 +445,7 @@ int run(int argc, char** argv) {
   }
   setThreadCount(threads);
   if (*grow_app) runGrow(grow);
+  if (*leaf_grow_app) runLeafGrow(leaf_grow);
   if (*leaf_import_app) runLeafImport(leaf_import);
   if (*leaf_bake_app) runLeafBake(leaf_bake);
   if (*inspect_app) runInspect(inspect);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "plant/tile_noise.h"
+#include "base/tile_noise.h"
 
 namespace verdure {
 namespace {

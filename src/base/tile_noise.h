@@ -1,5 +1,5 @@
-#ifndef VERDURE_PLANT_TILE_NOISE_H_
-#define VERDURE_PLANT_TILE_NOISE_H_
+#ifndef VERDURE_BASE_TILE_NOISE_H_
+#define VERDURE_BASE_TILE_NOISE_H_
 
 #include <cmath>
 #include <cstdint>
@@ -89,4 +89,4 @@ inline Cell cellNoise(float u, float v, int nu, int nv, std::uint32_t seed) {
 
 }  // namespace verdure
 
-#endif  // VERDURE_PLANT_TILE_NOISE_H_
+#endif  // VERDURE_BASE_TILE_NOISE_H_

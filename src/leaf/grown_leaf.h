@@ -1,0 +1,57 @@
+#ifndef VERDURE_LEAF_GROWN_LEAF_H_
+#define VERDURE_LEAF_GROWN_LEAF_H_
+
+#include <vector>
+
+#include "leaf/leaf_raster.h"
+#include "leaf/leaf_species.h"
+
+// What the maps of a blade are made from, texel by texel, and the steps that make them.
+
+namespace verdure {
+
+/// A grown leaf before it is painted.
+struct GrownLeaf {
+  LeafPlan form;
+  std::vector<VeinNode> veins;
+};
+GrownLeaf growForm(const LeafSpecies& species, std::uint32_t seed);
+
+struct BladeFields {
+  LeafFrame frame;
+  std::vector<float> coverage;  ///< by the outline, [0, 1]
+  std::vector<float> edge;      ///< mm to the outline, positive inside, at most edge_reach
+  Ridges ridge;                 ///< veins
+  std::vector<float> vein;      ///< mm to the nearest vein
+  std::vector<float> major;     ///< mm to the nearest primary or secondary vein
+  std::vector<float> stalk;     ///< 1 on the stalk, 0 on the blade
+  float edge_reach = 0;
+  float stalk_radius = 0;  ///< mm
+};
+BladeFields rasterise(const GrownLeaf& leaf, const LeafSpecies& species, int size);
+
+/// What time does to a leaf, texel by texel.
+struct Blemishes {
+  std::vector<float> hole;   ///< mm to the nearest hole or bite, negative inside
+  std::vector<float> brown;  ///< dead tissue, [0, 1]
+};
+Blemishes blemish(const GrownLeaf& leaf, const BladeFields& fields, const LeafSpecies& species,
+                  const LeafGrowOptions& options);
+
+/// Fills relief, thickness and normals.
+void shapeRelief(const BladeFields& fields, const LeafSpecies& species, std::uint32_t seed,
+                 LeafSet& set);
+
+/// Fills albedo and translucency of both sides.
+void paintLeaf(const BladeFields& fields, const Blemishes& blemishes, const LeafSpecies& species,
+               const LeafGrowOptions& options, LeafSet& set);
+
+/// Normals of a side from the slopes of its relief (central differences, one-sided at the borders).
+void setNormals(LeafSide& side, int size, float mm_per_texel);
+
+/// A shoot with needles: all maps.
+LeafSet growShoot(const LeafSpecies& species, const LeafGrowOptions& options);
+
+}  // namespace verdure
+
+#endif  // VERDURE_LEAF_GROWN_LEAF_H_

@@ -48,8 +48,8 @@ struct LeafBakeReport {
 };
 
 /// Coefficients of the Half-Life 2 basis of L_D (3.16) for both sides, width * height each, rows
-/// from the top: what shared/leaf_basis.h evaluates. 0 far from the leaf; beside its outline, light
-/// that came sideways.
+/// from the top: what shared/leaf_basis.h evaluates. Outside of the leaf its border's go on, so
+/// that filtering shows no fringe.
 struct LeafTranslucency {
   int width = 0, height = 0;
   std::vector<glm::vec3> front;  ///< lit from the back, seen from the front

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "leaf/fill_outside.h"
 #include "leaf/leaf_transport.h"
 #include "shared/leaf_basis.h"
 
@@ -33,17 +34,20 @@ double conservation(const LeafTransport& leaf, const std::array<Plane, 3>& in,
   return leaving / entering;
 }
 
-std::vector<glm::vec3> unpadded(const LeafTransport& leaf,
+std::vector<glm::vec3> finished(const LeafTransport& leaf,
                                 const std::array<const Plane*, 3>& planes) {
   const auto w = static_cast<std::size_t>(leaf.width()),
              h = static_cast<std::size_t>(leaf.height());
   std::vector<glm::vec3> texels(w * h);
+  std::vector<std::uint8_t> inside(w * h);
   parallelFor(h, 16, [&](std::size_t y) {
     for (std::size_t x = 0; x < w; ++x) {
       const std::size_t i = y * leaf.stride() + x;
       texels[y * w + x] = {(*planes[0])[i], (*planes[1])[i], (*planes[2])[i]};
+      inside[y * w + x] = leaf.inside()[i];
     }
   });
+  fillOutside(texels, inside, leaf.width(), leaf.height());
   return texels;
 }
 
@@ -90,7 +94,7 @@ LeafTranslucency bakeLeafTranslucency(const LeafSet& set, const LeafBakeOptions&
   for (const std::size_t lit : {0, 1}) {
     const std::array<const Plane*, 3> out{&through[3 * lit], &through[3 * lit + 1],
                                           &through[3 * lit + 2]};
-    (lit == 1 ? baked.front : baked.back) = unpadded(leaf, out);
+    (lit == 1 ? baked.front : baked.back) = finished(leaf, out);
     leaf.report().conserved[1 - lit] = conservation(leaf, light[lit], out);
   }
   baked.report = leaf.report();

@@ -243,7 +243,7 @@ TEST(GaussianSum, HoldsForThickLeavesToo) {
   for (const double d : {2.0, 6.0}) {
     const ThicknessGrid grid(multipole, d, d);
     const double radius = kernelRadius(multipole, d, d);
-    EXPECT_GT(radius, 3.0);
+    EXPECT_GT(radius, 2.5);
     EXPECT_LT(multipole.beyond(radius, d), 2e-2 * multipole.total(d));
     EXPECT_LT(fitGaussians(multipole, 0.2, grid, radius).residual, 2e-2) << d;
   }

@@ -100,7 +100,7 @@ TEST(LeafGrow, MapsAreSoundForAllSpeciesAndAges) {
 TEST(LeafOutline, IsSimpleAndStandsOnItsFoot) {
   const auto cross = [](const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; };
   for (const LeafSpecies* species : blades())
-    for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u, 6u}) {
+    for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u}) {
       const LeafPlan form = species->form(seed);
       const Polyline& p = form.outline;
       EXPECT_GT(polygonArea(p), 300) << species->info.name;
@@ -240,7 +240,7 @@ TEST_P(Venation, ReachesEveryPlaceOfTheBlade) {
     for (int x = 0; x < 96; ++x) {
       const glm::vec2 p = frame.toMm({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f});
       if (depth[static_cast<std::size_t>(y * 96 + x)] <
-              1.5f * options.clearance_mm + 0.6f * options.spacing_mm)
+          1.5f * options.clearance_mm + 0.6f * options.spacing_mm)
         continue;
       float nearest = 1e30f, stalk = 1e30f;
       for (const VeinNode& node : leaf.veins) {

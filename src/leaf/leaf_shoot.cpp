@@ -127,7 +127,7 @@ Paint paintRod(const Rod& rod, const Place& place, const LeafSpecies& species, f
   Pigments pigments = mix(species.summer, species.spring, spring);
   // Needles live for years: only the oldest yellow in autumn, from the tip.
   const float tip = place.along / rod.length;
-  const float onset = 0.55f + 0.75f * rod.old - 0.18f * tip;
+  const float onset = 0.68f + 1.0f * rod.old - 0.18f * tip;
   pigments = mix(pigments, species.autumn, glm::smoothstep(0.0f, 0.35f, age - onset));
   pigments.chlorophyll *= rod.shade * (1 + 0.25f * noise);
   pigments.chlorophyll *= 1 + 0.09f * std::cos(place.across * 9.4f);  // rows of stomata

@@ -30,8 +30,7 @@ struct LeafFrame {
 /// The smallest frame that shows the polygon with a margin.
 LeafFrame frameOf(const Polyline& outline, int size);
 
-/// Adds the area that a simple polygon (mm) covers of each texel, exactly, to `row_sums`.
-/// Result: size x size values in [0, 1].
+/// Share of each texel that a simple polygon (mm) covers, exactly: size x size values in [0, 1].
 std::vector<float> coverageOf(const Polyline& polygon, const LeafFrame& frame);
 
 /// A line of varying half width, mm.

@@ -5,8 +5,8 @@
 namespace verdure {
 namespace {
 
-// Sizes after the floras: blades and stalks at the middle of the species' range. Seven numbers of
-// the autumn colours are pigments relative to a summer leaf.
+// Sizes after the floras: blades and stalks at the middle of the species' range.
+// Pigments are chlorophyll, carotenoids, anthocyanins and tannins.
 
 LeafSpecies quakingAspen() {
   PinnateForm form;

@@ -48,8 +48,8 @@ struct LeafBakeReport {
 };
 
 /// Coefficients of the Half-Life 2 basis of L_D (3.16) for both sides, width * height each, rows
-/// from the top: what shared/leaf_basis.h evaluates. 0 far from the leaf; beside its outline, light
-/// that came sideways.
+/// from the top: what shared/leaf_basis.h evaluates. Outside of the leaf its border's go on, so
+/// that filtering shows no fringe.
 struct LeafTranslucency {
   int width = 0, height = 0;
   std::vector<glm::vec3> front;  ///< lit from the back, seen from the front
@@ -61,14 +61,16 @@ struct LeafTranslucency {
 LeafTranslucency bakeLeafTranslucency(const LeafSet& set, const LeafBakeOptions& options = {});
 
 /// How far three coefficients are from the light that they stand for (figure 3.19), at one
-/// elevation of the sun, over all texels of the leaf, both sides and four azimuths.
+/// elevation of the sun, over all texels of the leaf, both sides and four azimuths. Texels with
+/// less than a hundredth of the mean light are left out: a share of next to nothing says nothing.
 struct LeafErrors {
   double elevation = 0;  ///< above the leaf's plane, radians
   double mean = 0;       ///< of L_rec / L - 1
   double mean_absolute = 0;
   double rms = 0;
   double low = 0, high = 0;       ///< what 5 % of the texels are below, and above
-  std::vector<double> histogram;  ///< shares of texels, kLeafErrorBins from -0.5 to 0.5
+  double dark = 0;                ///< share of the texels left out
+  std::vector<double> histogram;  ///< shares of the others, kLeafErrorBins from -0.5 to 0.5
 };
 inline constexpr int kLeafErrorBins = 100;
 

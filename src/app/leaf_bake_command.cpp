@@ -59,6 +59,7 @@ Json jsonOfErrors(const LeafErrors& e) {
           {"rms", e.rms},
           {"percentile_5", e.low},
           {"percentile_95", e.high},
+          {"dark_share", e.dark},
           {"histogram_from", -0.5},
           {"histogram_to", 0.5},
           {"histogram", e.histogram}};

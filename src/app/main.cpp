@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <memory>
 
 #include "app/commands.h"
 #include "base/parallel.h"
@@ -11,6 +12,17 @@ namespace {
 
 using namespace verdure;
 using namespace verdure::app;
+
+/// Help of all commands that goes down to the commands of commands.
+class NestedHelp : public CLI::Formatter {
+ public:
+  std::string make_expanded(const CLI::App* command) const override {
+    std::string help = CLI::Formatter::make_expanded(command);
+    for (const CLI::App* part : command->get_subcommands([](const CLI::App*) { return true; }))
+      help += make_expanded(part);
+    return help;
+  }
+};
 
 void addLoadOptions(CLI::App& command, LoadOptions& load) {
   command
@@ -130,6 +142,7 @@ int fail(const std::string& message) {
 
 int run(int argc, char** argv) {
   CLI::App app{"verdure: vegetation, grown, lit and rendered", "verdure"};
+  app.formatter(std::make_shared<NestedHelp>());
   app.set_version_flag("--version", std::string("verdure ") + VERDURE_VERSION);
   app.fallthrough();  // --threads may stand behind the command
   app.set_help_all_flag("--help-all", "Help of all commands");

@@ -137,7 +137,8 @@ GaussianSum fitGaussians(const Multipole& multipole, double texel, const Thickne
       error += samples[s].count * std::abs(value - exact[s]);
       size += samples[s].count * std::abs(exact[s]);
     }
-    residuals[t] = error / size;
+    const double bright = 0.01 * multipole.total(grid.thickness(0));
+    residuals[t] = error / size * std::min(1.0, multipole.total(thickness) / bright);
     for (std::size_t k = 0; k < n; ++k) sum.terms[k].weights[t] = static_cast<float>(found[k]);
   });
   sum.residual = *std::max_element(residuals.begin(), residuals.end());

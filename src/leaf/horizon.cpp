@@ -108,22 +108,27 @@ std::vector<float> Horizon::slopes(int slice) const {
 
   // Each texel lies between two lines, and at least the nearer one passes through the leaf there.
   std::vector<float> slopes(stride_ * static_cast<std::size_t>(rows_.across), 0.0f);
-  parallelChunks(along, 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t j = 0; j < across; ++j)
-      for (std::size_t a = begin; a < end; ++a) {
-        if (field.heights[j * along + a] == kNone) continue;
-        // The line through this texel would begin at j - lean a.
-        const Crossing& c = crossings[a];
-        const std::ptrdiff_t line = static_cast<std::ptrdiff_t>(j) - c.row - first_line;
-        const std::size_t after = static_cast<std::size_t>(line) * along + a;
-        const float high = found[after];
-        const float low = c.share > 0.0f && line > 0 ? found[after - along] : high;
-        const float slope = low == kNone    ? high
-                            : high == kNone ? low
-                                            : high + c.share * (low - high);
-        slopes[transposed ? a * stride_ + j : j * stride_ + a] = std::max(slope, 0.0f);
-      }
-  });
+  const auto resample = [&](std::size_t j, std::size_t a) {
+    if (field.heights[j * along + a] == kNone) return 0.0f;
+    // The line through this texel would begin at j - lean a.
+    const Crossing& c = crossings[a];
+    const std::ptrdiff_t line = static_cast<std::ptrdiff_t>(j) - c.row - first_line;
+    const std::size_t after = static_cast<std::size_t>(line) * along + a;
+    const float high = found[after];
+    const float low = c.share > 0.0f && line > 0 ? found[after - along] : high;
+    const float slope = low == kNone ? high : high == kNone ? low : high + c.share * (low - high);
+    return std::max(slope, 0.0f);
+  };
+  if (transposed) {
+    parallelChunks(along, 32, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t j = 0; j < across; ++j)
+        for (std::size_t a = begin; a < end; ++a) slopes[a * stride_ + j] = resample(j, a);
+    });
+  } else {
+    parallelFor(across, 8, [&](std::size_t j) {
+      for (std::size_t a = 0; a < along; ++a) slopes[j * stride_ + a] = resample(j, a);
+    });
+  }
   return slopes;
 }
 

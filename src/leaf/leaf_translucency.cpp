@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "leaf/fill_outside.h"
 #include "leaf/leaf_transport.h"
 #include "shared/leaf_basis.h"
 
@@ -33,17 +34,20 @@ double conservation(const LeafTransport& leaf, const std::array<Plane, 3>& in,
   return leaving / entering;
 }
 
-std::vector<glm::vec3> unpadded(const LeafTransport& leaf,
+std::vector<glm::vec3> finished(const LeafTransport& leaf,
                                 const std::array<const Plane*, 3>& planes) {
   const auto w = static_cast<std::size_t>(leaf.width()),
              h = static_cast<std::size_t>(leaf.height());
   std::vector<glm::vec3> texels(w * h);
+  std::vector<std::uint8_t> inside(w * h);
   parallelFor(h, 16, [&](std::size_t y) {
     for (std::size_t x = 0; x < w; ++x) {
       const std::size_t i = y * leaf.stride() + x;
       texels[y * w + x] = {(*planes[0])[i], (*planes[1])[i], (*planes[2])[i]};
+      inside[y * w + x] = leaf.inside()[i];
     }
   });
+  fillOutside(texels, inside, leaf.width(), leaf.height());
   return texels;
 }
 
@@ -90,7 +94,7 @@ LeafTranslucency bakeLeafTranslucency(const LeafSet& set, const LeafBakeOptions&
   for (const std::size_t lit : {0, 1}) {
     const std::array<const Plane*, 3> out{&through[3 * lit], &through[3 * lit + 1],
                                           &through[3 * lit + 2]};
-    (lit == 1 ? baked.front : baked.back) = unpadded(leaf, out);
+    (lit == 1 ? baked.front : baked.back) = finished(leaf, out);
     leaf.report().conserved[1 - lit] = conservation(leaf, light[lit], out);
   }
   baked.report = leaf.report();
@@ -107,7 +111,11 @@ std::vector<LeafErrors> measureLeafErrors(const LeafSet& set, const LeafTransluc
     LeafErrors errors;
     errors.elevation = std::numbers::pi / fraction;
     errors.histogram.assign(kLeafErrorBins, 0.0);
-    std::vector<double> values;
+    struct Light {
+      float exact, found;
+    };
+    std::vector<Light> lights;
+    double sum_exact = 0;
     for (const int side : {0, 1}) {
       const std::vector<glm::vec3>& h = side == 0 ? baked.back : baked.front;
       // Overhead all azimuths are one.
@@ -120,19 +128,21 @@ std::vector<LeafErrors> measureLeafErrors(const LeafSet& set, const LeafTransluc
         const Plane through = leaf.throughGaussians(sum, {&light[0]})[0];
         // shared::leafTransport looks from the other side.
         const glm::vec3 to_sun(w.x, w.y, -w.z);
-        for (int y = 0; y < leaf.height(); ++y)
-          for (int x = 0; x < leaf.width(); ++x) {
-            const std::size_t i =
-                static_cast<std::size_t>(y) * leaf.stride() + static_cast<std::size_t>(x);
-            if (leaf.inside()[i] == 0 || !(through[i] > 1e-9f)) continue;
-            const std::size_t texel =
-                static_cast<std::size_t>(y) * static_cast<std::size_t>(leaf.width()) +
-                static_cast<std::size_t>(x);
-            values.push_back(double{shared::leafTransport(h[texel], to_sun)} / double{through[i]} -
-                             1.0);
-          }
+        const auto width = static_cast<std::size_t>(leaf.width());
+        for (std::size_t texel = 0; texel < h.size(); ++texel) {
+          const std::size_t i = texel / width * leaf.stride() + texel % width;
+          if (leaf.inside()[i] == 0) continue;
+          lights.push_back({through[i], shared::leafTransport(h[texel], to_sun)});
+          sum_exact += double{through[i]};
+        }
       }
     }
+    const double least = 0.01 * sum_exact / static_cast<double>(lights.size());
+    std::vector<double> values;
+    for (const Light& light : lights)
+      if (double{light.exact} > least)
+        values.push_back(double{light.found} / double{light.exact} - 1.0);
+    errors.dark = 1.0 - static_cast<double>(values.size()) / static_cast<double>(lights.size());
     for (const double value : values) {
       errors.mean += value;
       errors.mean_absolute += std::abs(value);

@@ -58,10 +58,6 @@ std::vector<float> signedDistance(const Polyline& outline, float reach_mm, const
 /// A Gaussian of standard deviation sigma (texels) by three box filters each way; borders repeat.
 void blur(std::vector<float>& map, int size, float sigma);
 
-/// Fills the texels of weight 0 with the colours around, coarse to fine (pull-push), and those of
-/// weights between in part, so that filtering shows no fringe.
-void fillOutside(std::vector<glm::vec3>& map, const std::vector<float>& weight, int size);
-
 }  // namespace verdure
 
 #endif  // VERDURE_LEAF_LEAF_RASTER_H_

@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "base/tile_noise.h"
+#include "leaf/fill_outside.h"
 #include "leaf/grown_leaf.h"
 
 namespace verdure {
@@ -249,7 +250,7 @@ LeafSet growShoot(const LeafSpecies& species, const LeafGrowOptions& options) {
         reliefs[i].y += 0.5f * lack;
       }
   });
-  fillOutside(reliefs, set.opacity, options.size);
+  fillOutside(reliefs, insideOf(set), options.size, options.size);
   for (std::size_t i = 0; i < n * n; ++i) {
     set.front.relief_mm[i] = reliefs[i].x;
     set.back.relief_mm[i] = reliefs[i].y;

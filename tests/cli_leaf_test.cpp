@@ -86,6 +86,9 @@ TEST_F(CommandLine, ImportsAndBakesMaps) {
   const HdrImage sum = readExrMap(path("other") + "/back_hl2.exr");
   EXPECT_NEAR(sum.at(8, 4).x / back.at(8, 4).x, 1.0f, 2e-3f);
   EXPECT_TRUE(fs::exists(path("other") + "/front_relief.png"));
+  // Less red than green is thrown back by this leaf, so more of it enters.
+  runWell({"leaf", "bake", path("leaf"), "-o", path("red"), "--wavelength", "1,0,0"});
+  EXPECT_GT(readExrMap(path("red") + "/back_hl2.exr").at(8, 4).x, back.at(8, 4).x);
   // A folder that has a leaf.json is read by it.
   EXPECT_NE(runWell({"leaf", "import", path("leaf"), "-o", path("third"), "--name", "Elm"})
                 .find("Elm: 16 x 8"),
@@ -143,6 +146,8 @@ TEST_F(CommandLine, RefusesWhatIsNoLeaf) {
            "0.25"});
   expectRefused({"leaf", "bake", path("leaf"), "--method", "fft"}, {"'fft'", "gaussians"});
   expectRefused({"leaf", "bake", path("leaf"), "--directions", "3"}, {"--directions: is 3"});
+  expectRefused({"leaf", "bake", path("leaf"), "--wavelength", "0,0,0"}, {"--wavelength", "0,1,0"});
+  expectRefused({"leaf", "bake", path("leaf"), "--wavelength", "1,2"}, {"--wavelength"});
   expectRefused({"leaf", "bake", path("leaf"), "--surface-reflection", "1"},
                 {"--surface-reflection: is 1"});
   expectRefused({"leaf", "bake", path("leaf"), "--report", path("nowhere/r.json")}, {"nowhere"});

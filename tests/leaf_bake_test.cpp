@@ -238,6 +238,17 @@ TEST(GaussianSum, IsTheKernel) {
 
 // --- the basis
 
+TEST(GaussianSum, HoldsForThickLeavesToo) {
+  const Multipole multipole(LeafOptics{}, 0.47);
+  for (const double d : {2.0, 6.0}) {
+    const ThicknessGrid grid(multipole, d, d);
+    const double radius = kernelRadius(multipole, d, d);
+    EXPECT_GT(radius, 2.5);
+    EXPECT_LT(multipole.beyond(radius, d), 2e-2 * multipole.total(d));
+    EXPECT_LT(fitGaussians(multipole, 0.2, grid, radius).residual, 2e-2) << d;
+  }
+}
+
 TEST(LeafBasis, IsOrthonormalAndKnowsItsClosedForms) {
   glm::dmat3 gram(0);
   glm::dvec3 of_cosine(0), of_one(0);

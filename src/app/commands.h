@@ -58,6 +58,7 @@ struct LeafBakeCommand {
   std::string method = "gaussians";
   int directions = 128;
   std::optional<float> surface_reflection;
+  std::string wavelength = "0,1,0";  ///< weights of R, G, B
   std::string report;
   bool json = false;
 };

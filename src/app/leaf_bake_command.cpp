@@ -1,6 +1,7 @@
 // leaf import, leaf bake: maps of leaves, and light through them.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -84,6 +85,12 @@ void runLeafBake(const LeafBakeCommand& command) {
   LeafBakeOptions options;
   options.directions = command.directions;
   options.surface_reflection = command.surface_reflection;
+  const std::vector<float> rgb = parseNumbers("--wavelength", command.wavelength, 3);
+  const float sum = rgb[0] + rgb[1] + rgb[2];
+  if (!(std::min({rgb[0], rgb[1], rgb[2]}) >= 0 && sum > 0))
+    throw Error("--wavelength", "'" + command.wavelength + "' weighs nothing, or less",
+                "give three numbers of at least 0, as 0,1,0");
+  options.wavelength = glm::vec3(rgb[0], rgb[1], rgb[2]) / sum;
   if (command.method == "direct")
     options.method = LeafBakeMethod::kDirect;
   else if (command.method != "gaussians")

@@ -215,6 +215,10 @@ int run(int argc, char** argv) {
   leaf_bake_app->add_option(
       "--surface-reflection", leaf_bake.surface_reflection,
       "Share of light inside that the surface throws back, [0, 1) (default: of the leaf's index)");
+  leaf_bake_app
+      ->add_option("--wavelength", leaf_bake.wavelength,
+                   "R,G,B: what of the albedo stands for the light that is simulated")
+      ->capture_default_str();
   leaf_bake_app->add_option("--report", leaf_bake.report,
                             "Write every number of the bake, and the basis' errors, as JSON");
   leaf_bake_app->add_flag("--json", leaf_bake.json, "Print the report as JSON");

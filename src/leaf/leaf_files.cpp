@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <initializer_list>
 #include <string_view>
@@ -188,7 +189,7 @@ Json writeGreys(const LeafSet& set, const std::vector<float>& values, const fs::
   for (std::size_t i = 0; i < values.size(); ++i)
     image.values[i] = high > low ? toShort((values[i] - low) / (high - low)) : std::uint16_t{0};
   writeFile(path, encodePng(image));
-  return Json::array({low, high});
+  return Json::array({shortest(low), shortest(high)});
 }
 
 Json writeSide(const LeafSet& set, const LeafSide& side, const std::string& which,
@@ -227,6 +228,13 @@ nlohmann::ordered_json readLeafJson(const fs::path& folder) {
   return json;
 }
 
+double shortest(float value) {
+  const std::string digits = fmt::format("{}", value);
+  double number = 0.0;
+  std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  return number;
+}
+
 void writeLeafJson(const nlohmann::ordered_json& json, const fs::path& folder) {
   writeFile(folder / kLeafFile, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
@@ -242,7 +250,7 @@ void writeLeafSet(const LeafSet& set, const fs::path& folder) {
   json["format"] = kFormat;
   json["version"] = kVersion;
   json["name"] = set.name;
-  json["mm_per_texel"] = set.mm_per_texel;
+  json["mm_per_texel"] = shortest(set.mm_per_texel);
   json["front"] = writeSide(set, set.front, "front", folder);
   json["back"] = writeSide(set, set.back, "back", folder);
   json["thickness"] = "thickness.png";
@@ -256,13 +264,13 @@ void writeLeafSet(const LeafSet& set, const fs::path& folder) {
   writePng(opacity, folder / "opacity.png");
   json["opacity"] = "opacity.png";
   const LeafOptics& o = set.optics;
-  json["optics"] = {{"scattering_per_mm", o.scattering_per_mm},
-                    {"absorption_per_mm", o.absorption_per_mm},
-                    {"anisotropy", o.anisotropy},
-                    {"refractive_index", o.refractive_index},
-                    {"front_roughness", o.front_roughness},
-                    {"back_roughness", o.back_roughness},
-                    {"front_index", o.front_index}};
+  json["optics"] = {{"scattering_per_mm", shortest(o.scattering_per_mm)},
+                    {"absorption_per_mm", shortest(o.absorption_per_mm)},
+                    {"anisotropy", shortest(o.anisotropy)},
+                    {"refractive_index", shortest(o.refractive_index)},
+                    {"front_roughness", shortest(o.front_roughness)},
+                    {"back_roughness", shortest(o.back_roughness)},
+                    {"front_index", shortest(o.front_index)}};
   json["notes"] = set.notes;
   writeLeafJson(json, folder);
 }

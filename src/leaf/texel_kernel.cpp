@@ -69,12 +69,12 @@ float ThicknessGrid::place(float thickness_mm) const {
 }
 
 double kernelRadius(const Multipole& multipole, double least, double most) {
-  constexpr double kThreshold = 1e-6;
+  const double threshold = std::min(1e-6, 1e-3 * multipole.transmittance(0.0, least));
   const double step = 0.02 / multipole.decay();
   double radius = step;
   for (const double d : {least, most})
-    for (double r = step; r < 20.0 / multipole.decay(); r += step)
-      if (std::abs(multipole.transmittance(r, d)) > kThreshold) radius = std::max(radius, r + step);
+    for (double r = step; r < 60.0 / multipole.decay(); r += step)
+      if (std::abs(multipole.transmittance(r, d)) > threshold) radius = std::max(radius, r + step);
   return radius;
 }
 

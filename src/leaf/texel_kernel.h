@@ -29,7 +29,8 @@ class ThicknessGrid {
 };
 
 /// Radius in mm beyond which |T| stays below 1e-6 / mm^2, Habel's threshold, at the least thickness
-/// and at the largest (of which either may reach farther).
+/// and at the largest (of which either may reach farther); or below a thousandth of what leaves
+/// right opposite at the least, where a leaf is so thick that this is less.
 double kernelRadius(const Multipole& multipole, double least, double most);
 
 }  // namespace verdure

@@ -36,8 +36,8 @@ Json writeSide(const LeafTranslucency& baked, const std::vector<glm::vec3>& coef
   writePng(bytes, folder / (which + "_hl2.png"));
   return {{"exr", which + "_hl2.exr"},
           {"png", which + "_hl2.png"},
-          {"scale", {scale.x, scale.y, scale.z}},
-          {"offset", {least.x, least.y, least.z}}};
+          {"scale", {shortest(scale.x), shortest(scale.y), shortest(scale.z)}},
+          {"offset", {shortest(least.x), shortest(least.y), shortest(least.z)}}};
 }
 
 }  // namespace

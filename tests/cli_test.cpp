@@ -446,5 +446,28 @@ TEST_F(CommandLine, AKilledBakeLeavesNoPartOfAFile) {
     }
 }
 
+TEST_F(CommandLine, LeafGrowWritesAFolderOfMaps) {
+  const std::string folder = path("leaf");
+  const Json said = Json::parse(runWell({"leaf", "grow", "--species", "hedge", "--seed", "3",
+                                         "--size", "64", "--age", "0.8", "-o", folder, "--json"}));
+  EXPECT_EQ(said["species"], "hedge");
+  EXPECT_EQ(said["size"], 64);
+  EXPECT_GT(said["area_mm2"], 300);
+  EXPECT_LT(said["area_mm2"], 1500);
+  const Json leaf = Json::parse(textOf(fs::path(folder) / "leaf.json"));
+  EXPECT_EQ(leaf["name"], "hedge");
+  EXPECT_EQ(leaf["mm_per_texel"], said["mm_per_texel"]);
+  const Image albedo = readImage(fs::path(folder) / "front_albedo.png");
+  EXPECT_EQ(albedo.width, 64);
+  EXPECT_EQ(albedo.height, 64);
+  const std::string list = runWell({"leaf", "grow", "--list"});
+  for (const char* name : {"silver-birch", "black-oak", "scots-pine"})
+    EXPECT_NE(list.find(name), std::string::npos) << name;
+  expectRefused({"leaf", "grow"}, {"no folder is named", "-o"});
+  expectRefused({"leaf", "grow", "--species", "beech", "-o", folder}, {"beech", "silver-birch"});
+  expectRefused({"leaf", "grow", "--size", "8", "-o", folder}, {"8 texels", "16 to 8192"});
+  expectRefused({"leaf", "grow", "--age", "nan", "-o", folder}, {"leaf age", "0 (spring)"});
+}
+
 }  // namespace
 }  // namespace verdure::test

@@ -100,7 +100,7 @@ TEST(LeafGrow, MapsAreSoundForAllSpeciesAndAges) {
 TEST(LeafOutline, IsSimpleAndStandsOnItsFoot) {
   const auto cross = [](const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; };
   for (const LeafSpecies* species : blades())
-    for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u, 6u}) {
+    for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u}) {
       const LeafPlan form = species->form(seed);
       const Polyline& p = form.outline;
       EXPECT_GT(polygonArea(p), 300) << species->info.name;
@@ -149,6 +149,9 @@ TEST(LeafRaster, CoverageIsExact) {
       }
       const float value = coverage[static_cast<std::size_t>(y * 24 + x)];
       ASSERT_NEAR(value, static_cast<float>(hits) / 1600, 0.02f) << x << ", " << y;
+      if (hits == 0 && value < 1e-4f) {
+        ASSERT_EQ(value, 0.0f) << x << ", " << y;
+      }
       sum += static_cast<double>(value);
     }
   EXPECT_NEAR(sum * 0.25, polygonArea(square), 1e-4);
@@ -169,28 +172,6 @@ TEST(LeafRaster, BlurHasItsDeviationAndKeepsTheSum) {
       }
     EXPECT_NEAR(sum, 1, 1e-4);
     EXPECT_NEAR(std::sqrt(second), static_cast<double>(sigma), 0.06 * static_cast<double>(sigma));
-  }
-}
-
-TEST(LeafRaster, FillKeepsWhatIsThereAndInventsNothing) {
-  const int n = 37;
-  std::vector<glm::vec3> map(static_cast<std::size_t>(n * n), glm::vec3(9));
-  std::vector<float> weight(map.size());
-  Random random(3);
-  for (std::size_t i = 0; i < map.size(); ++i)
-    if (random.uniform() < 0.05f) {
-      weight[i] = 1;
-      map[i] = {random.uniform(0.2f, 0.4f), 0.5f, 1};
-    }
-  const std::vector<glm::vec3> before = map;
-  fillOutside(map, weight, n);
-  for (std::size_t i = 0; i < map.size(); ++i) {
-    if (weight[i] == 1) {
-      EXPECT_EQ(map[i], before[i]);
-    }
-    EXPECT_GE(map[i].x, 0.2f - 1e-5f);
-    EXPECT_LE(map[i].x, 0.4f + 1e-5f);
-    EXPECT_NEAR(map[i].y, 0.5f, 1e-5f);
   }
 }
 
@@ -240,7 +221,7 @@ TEST_P(Venation, ReachesEveryPlaceOfTheBlade) {
     for (int x = 0; x < 96; ++x) {
       const glm::vec2 p = frame.toMm({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f});
       if (depth[static_cast<std::size_t>(y * 96 + x)] <
-              1.5f * options.clearance_mm + 0.6f * options.spacing_mm)
+          1.5f * options.clearance_mm + 0.6f * options.spacing_mm)
         continue;
       float nearest = 1e30f, stalk = 1e30f;
       for (const VeinNode& node : leaf.veins) {

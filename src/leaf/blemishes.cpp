@@ -21,7 +21,8 @@ float growth(float age, float birth) {
 
 std::vector<Spot> spotsOf(const GrownLeaf& leaf, const LeafFrame& frame,
                           const LeafGrowOptions& options) {
-  Random random(hash(options.seed ^ 0x73706f7473ull));
+  // Leaves of other species with the same seed have other spots.
+  Random random(hash(options.seed ^ 0x73706f7473ull ^ (std::uint64_t{leaf.veins.size()} << 32)));
   const float area = static_cast<float>(std::abs(polygonArea(leaf.form.outline)));
   const float scale = std::clamp(std::sqrt(area) / 35, 0.4f, 1.4f);
   std::vector<Spot> spots;

@@ -1,6 +1,7 @@
 #ifndef VERDURE_LEAF_GROWN_LEAF_H_
 #define VERDURE_LEAF_GROWN_LEAF_H_
 
+#include <cstdint>
 #include <vector>
 
 #include "leaf/leaf_raster.h"
@@ -48,6 +49,9 @@ void paintLeaf(const BladeFields& fields, const Blemishes& blemishes, const Leaf
 
 /// Normals of a side from the slopes of its relief (central differences, one-sided at the borders).
 void setNormals(LeafSide& side, int size, float mm_per_texel);
+
+/// 1 where there is any leaf: whose colours are painted.
+std::vector<std::uint8_t> insideOf(const LeafSet& set);
 
 /// A shoot with needles: all maps.
 LeafSet growShoot(const LeafSpecies& species, const LeafGrowOptions& options);

@@ -56,4 +56,10 @@ BladeFields rasterise(const GrownLeaf& leaf, const LeafSpecies& species, int siz
   return fields;
 }
 
+std::vector<std::uint8_t> insideOf(const LeafSet& set) {
+  std::vector<std::uint8_t> inside(set.texelCount());
+  for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = set.opacity[i] > 0;
+  return inside;
+}
+
 }  // namespace verdure

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "leaf/fill_outside.h"
 #include "leaf/grown_leaf.h"
 #include "verdure/error.h"
 
@@ -56,9 +57,10 @@ LeafSet growLeaf(const LeafGrowOptions& options) {
   set.name = species.info.name;
   set.optics.front_roughness =
       glm::mix(species.roughness, 0.45f, options.age * options.age * options.age);
+  const std::vector<std::uint8_t> inside = insideOf(set);
   for (LeafSide* side : {&set.front, &set.back})
     for (std::vector<glm::vec3>* map : {&side->albedo, &side->translucency})
-      fillOutside(*map, set.opacity, options.size);
+      fillOutside(*map, inside, set.width, set.height);
   limitLight(set);
   checkLeafSet(set, "grown leaf " + options.species);
   return set;

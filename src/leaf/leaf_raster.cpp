@@ -118,7 +118,9 @@ std::vector<float> coverageOf(const Polyline& polygon, const LeafFrame& frame) {
     double sum = 0;
     for (std::size_t i = y * side; i < (y + 1) * side; ++i) {
       sum += static_cast<double>(changes[i]);
-      coverage[i] = std::clamp(static_cast<float>(std::abs(sum)), 0.0f, 1.0f);
+      // What rounding leaves over is no coverage.
+      const double share = std::abs(sum);
+      coverage[i] = share < 1e-5 ? 0.0f : share > 1 - 1e-5 ? 1.0f : static_cast<float>(share);
     }
   });
   return coverage;
@@ -241,60 +243,6 @@ void blur(std::vector<float>& map, int size, float sigma) {
   };
   pass(true);
   pass(false);
-}
-
-void fillOutside(std::vector<glm::vec3>& map, const std::vector<float>& weight, int size) {
-  // Pull: halve until one texel is left, by weighted means.
-  struct Level {
-    int size;
-    std::vector<glm::vec4> sums;  ///< colour times weight, weight
-  };
-  std::vector<Level> levels{{size, {}}};
-  levels[0].sums.resize(map.size());
-  for (std::size_t i = 0; i < map.size(); ++i)
-    levels[0].sums[i] = glm::vec4(map[i] * weight[i], weight[i]);
-  while (levels.back().size > 1) {
-    const Level& fine = levels.back();
-    Level coarse{(fine.size + 1) / 2, {}};
-    coarse.sums.resize(static_cast<std::size_t>(coarse.size) *
-                       static_cast<std::size_t>(coarse.size));
-    parallelFor(static_cast<std::size_t>(coarse.size), 16, [&](std::size_t row) {
-      const int y = static_cast<int>(row);
-      for (int x = 0; x < coarse.size; ++x) {
-        glm::vec4 sum(0);
-        for (int j = 2 * y; j < std::min(2 * y + 2, fine.size); ++j)
-          for (int i = 2 * x; i < std::min(2 * x + 2, fine.size); ++i)
-            sum += fine.sums[indexOf(i, j, fine.size)];
-        coarse.sums[indexOf(x, y, coarse.size)] = sum / std::max(sum.w, 1.0f);
-      }
-    });
-    levels.push_back(std::move(coarse));
-  }
-  // Push: what a level lacks comes from the coarser one, bilinearly.
-  for (std::size_t l = levels.size() - 1; l-- > 0;) {
-    const Level& coarse = levels[l + 1];
-    Level& fine = levels[l];
-    parallelFor(static_cast<std::size_t>(fine.size), 16, [&](std::size_t row) {
-      const int y = static_cast<int>(row);
-      for (int x = 0; x < fine.size; ++x) {
-        glm::vec4& value = fine.sums[indexOf(x, y, fine.size)];
-        if (value.w >= 1) continue;
-        const float u = 0.5f * (static_cast<float>(x) + 0.5f) - 0.5f;
-        const float v = 0.5f * (static_cast<float>(y) + 0.5f) - 0.5f;
-        const int x0 = static_cast<int>(std::floor(u)), y0 = static_cast<int>(std::floor(v));
-        const float fx = u - static_cast<float>(x0), fy = v - static_cast<float>(y0);
-        const auto at = [&](int i, int j) {
-          return glm::vec3(coarse.sums[indexOf(std::clamp(i, 0, coarse.size - 1),
-                                               std::clamp(j, 0, coarse.size - 1), coarse.size)]);
-        };
-        const glm::vec3 around = glm::mix(glm::mix(at(x0, y0), at(x0 + 1, y0), fx),
-                                          glm::mix(at(x0, y0 + 1), at(x0 + 1, y0 + 1), fx), fy);
-        value = glm::vec4(glm::vec3(value) + (1 - value.w) * around, 1);
-      }
-    });
-  }
-  for (std::size_t i = 0; i < map.size(); ++i)
-    if (weight[i] < 1) map[i] = glm::vec3(levels[0].sums[i]);
 }
 
 }  // namespace verdure

@@ -30,8 +30,7 @@ struct LeafFrame {
 /// The smallest frame that shows the polygon with a margin.
 LeafFrame frameOf(const Polyline& outline, int size);
 
-/// Adds the area that a simple polygon (mm) covers of each texel, exactly, to `row_sums`.
-/// Result: size x size values in [0, 1].
+/// Share of each texel that a simple polygon (mm) covers, exactly: size x size values in [0, 1].
 std::vector<float> coverageOf(const Polyline& polygon, const LeafFrame& frame);
 
 /// A line of varying half width, mm.
@@ -58,10 +57,6 @@ std::vector<float> signedDistance(const Polyline& outline, float reach_mm, const
 
 /// A Gaussian of standard deviation sigma (texels) by three box filters each way; borders repeat.
 void blur(std::vector<float>& map, int size, float sigma);
-
-/// Fills the texels of weight 0 with the colours around, coarse to fine (pull-push), and those of
-/// weights between in part, so that filtering shows no fringe.
-void fillOutside(std::vector<glm::vec3>& map, const std::vector<float>& weight, int size);
 
 }  // namespace verdure
 

@@ -64,7 +64,7 @@ void shapeRelief(const BladeFields& fields, const LeafSpecies& species, std::uin
     for (std::size_t i = row * n; i < (row + 1) * n; ++i) {
       const float blade = 1 - fields.stalk[i];
       const float rim = glm::smoothstep(0.0f, 0.5f, fields.edge[i]);
-      const float sheet = species.thickness_mm * (0.6f + 0.4f * rim);
+      const float sheet = species.thickness_mm * (0.72f + 0.28f * rim);
       const float front_vein =
           0.85f * (1 - blade) * fields.ridge.height[i] - blade * species.groove * groove[i];
       const float back_vein = glm::mix(0.85f, species.protrusion, blade) * fields.ridge.height[i] +

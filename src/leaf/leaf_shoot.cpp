@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "base/tile_noise.h"
+#include "leaf/fill_outside.h"
 #include "leaf/grown_leaf.h"
 
 namespace verdure {
@@ -127,7 +128,7 @@ Paint paintRod(const Rod& rod, const Place& place, const LeafSpecies& species, f
   Pigments pigments = mix(species.summer, species.spring, spring);
   // Needles live for years: only the oldest yellow in autumn, from the tip.
   const float tip = place.along / rod.length;
-  const float onset = 0.55f + 0.75f * rod.old - 0.18f * tip;
+  const float onset = 0.68f + 1.0f * rod.old - 0.18f * tip;
   pigments = mix(pigments, species.autumn, glm::smoothstep(0.0f, 0.35f, age - onset));
   pigments.chlorophyll *= rod.shade * (1 + 0.25f * noise);
   pigments.chlorophyll *= 1 + 0.09f * std::cos(place.across * 9.4f);  // rows of stomata
@@ -249,7 +250,7 @@ LeafSet growShoot(const LeafSpecies& species, const LeafGrowOptions& options) {
         reliefs[i].y += 0.5f * lack;
       }
   });
-  fillOutside(reliefs, set.opacity, options.size);
+  fillOutside(reliefs, insideOf(set), options.size, options.size);
   for (std::size_t i = 0; i < n * n; ++i) {
     set.front.relief_mm[i] = reliefs[i].x;
     set.back.relief_mm[i] = reliefs[i].y;

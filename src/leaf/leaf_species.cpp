@@ -5,8 +5,8 @@
 namespace verdure {
 namespace {
 
-// Sizes after the floras: blades and stalks at the middle of the species' range. Seven numbers of
-// the autumn colours are pigments relative to a summer leaf.
+// Sizes after the floras: blades and stalks at the middle of the species' range.
+// Pigments are chlorophyll, carotenoids, anthocyanins and tannins.
 
 LeafSpecies quakingAspen() {
   PinnateForm form;
@@ -147,7 +147,7 @@ LeafSpecies japaneseMaple() {
   s.info = {"japanese-maple", "Japanese maple (Acer palmatum)"};
   s.form = makeMaple;
   s.veins = {0.17f, 0.5f, 5, 0.2f, 2.6f};
-  s.thickness_mm = 0.16f;
+  s.thickness_mm = 0.18f;
   s.quilt_mm = 0.18f;
   s.quilt_reach_mm = 1.8f;
   // A red-leaved form, as the tree.

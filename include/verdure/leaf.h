@@ -59,8 +59,8 @@ struct LeafSet {
 /// ranges.
 void checkLeafSet(const LeafSet& set, const std::string& where);
 
-/// Several leaves as one set, in rows from the top: an atlas for a plant. All must have one size and
-/// scale; the optics are the first one's. Throws Error.
+/// Several leaves as one set, in rows from the top: an atlas for a plant. All must have one size
+/// and scale; the optics are the first one's. Throws Error.
 LeafSet tileLeaves(std::span<const LeafSet> leaves, int columns);
 
 }  // namespace verdure

@@ -42,8 +42,7 @@ Image mapPicture(const LeafSet& set, Texel texel) {
 
 glm::vec3 shown(const glm::vec3& linear) {
   glm::vec3 out;
-  for (int c = 0; c < 3; ++c)
-    out[c] = shared::srgbFromLinear(std::clamp(linear[c], 0.0f, 1.0f));
+  for (int c = 0; c < 3; ++c) out[c] = shared::srgbFromLinear(std::clamp(linear[c], 0.0f, 1.0f));
   return out;
 }
 
@@ -70,11 +69,10 @@ void drawDataSet(Page& page, const LeafSet& set) {
     page.endRow();
   }
   page.beginRow();
-  page.picture("figure3-9-thickness", mapPicture(set,
-                                                 [&](std::size_t i) {
-                                                   return glm::vec3(set.thickness_mm[i] / thickest);
-                                                 }),
-               fmt::format("thickness, white {:.2f} mm", thickest));
+  page.picture(
+      "figure3-9-thickness",
+      mapPicture(set, [&](std::size_t i) { return glm::vec3(set.thickness_mm[i] / thickest); }),
+      fmt::format("thickness, white {:.2f} mm", thickest));
   page.endRow();
 }
 
@@ -164,8 +162,8 @@ std::string transmittancePlot(const LeafOptics& optics) {
         kLeft, y, kWidth - 20, y + 4, decade);
   }
   for (int tenth = 0; tenth <= 10; tenth += 2)
-    svg += fmt::format("<text x='{:.0f}' y='{}' font-size='12'>{:.1f}</text>", x_of(0.1 * tenth) - 8,
-                       kBottom + 18, 0.1 * tenth);
+    svg += fmt::format("<text x='{:.0f}' y='{}' font-size='12'>{:.1f}</text>",
+                       x_of(0.1 * tenth) - 8, kBottom + 18, 0.1 * tenth);
   svg += fmt::format("<text x='{}' y='{}' font-size='12'>r, mm; T, 1/mm&#178;</text>", kWidth / 2,
                      kHeight - 6);
   const std::array<const char*, 5> colors{"#1b7837", "#7fbf7b", "#999", "#af8dc3", "#762a83"};
@@ -198,7 +196,8 @@ std::string errorPlot(const std::vector<LeafErrors>& errors) {
   for (int tick = -5; tick <= 5; ++tick) {
     const double x = kLeft + (tick + 5) / 10.0 * (kWidth - kLeft - 20);
     svg += fmt::format(
-        "<path d='M{:.1f} {}V{}' stroke='#ddd'/><text x='{:.1f}' y='{}' font-size='12'>{:.1f}</text>",
+        "<path d='M{:.1f} {}V{}' stroke='#ddd'/><text x='{:.1f}' y='{}' "
+        "font-size='12'>{:.1f}</text>",
         x, kTop, kBottom, x - 10, kBottom + 18, 0.1 * tick);
   }
   for (std::size_t k = 0; k < errors.size(); ++k) {
@@ -219,9 +218,11 @@ std::string errorPlot(const std::vector<LeafErrors>& errors) {
 
 void drawNumbers(Page& page, const Subject& subject) {
   page.heading("Figure 3.13: transmittance");
-  page.paragraph("T(r, d) of (3.8) for the leaf's optics, by the distance from where light enters.");
+  page.paragraph(
+      "T(r, d) of (3.8) for the leaf's optics, by the distance from where light enters.");
   page.beginRow();
-  page.svg("figure3-13", transmittancePlot(subject.set.optics), "thin leaves let through most, and "
+  page.svg("figure3-13", transmittancePlot(subject.set.optics),
+           "thin leaves let through most, and "
            "nearly straight");
   page.endRow();
 
@@ -238,16 +239,15 @@ void drawNumbers(Page& page, const Subject& subject) {
   page.picture("figure3-16-normal",
                mapPicture(set, [&](std::size_t i) { return set.back.normal[i] * 0.5f + 0.5f; }),
                "normals of the back");
-  page.picture("figure3-16-relief", mapPicture(set,
-                                               [&](std::size_t i) {
-                                                 return glm::vec3((set.back.relief_mm[i] - low) /
-                                                                  (high - low));
-                                               }),
+  page.picture("figure3-16-relief",
+               mapPicture(set,
+                          [&](std::size_t i) {
+                            return glm::vec3((set.back.relief_mm[i] - low) / (high - low));
+                          }),
                fmt::format("its relief, {:.2f} to {:.2f} mm", low, high));
   page.picture(
       "figure3-16-light",
-      mapPicture(set,
-                 [&](std::size_t i) { return glm::max(subject.light.front[i], 0.0f) / most; }),
+      mapPicture(set, [&](std::size_t i) { return glm::max(subject.light.front[i], 0.0f) / most; }),
       fmt::format("coefficients of the light that leaves the front, white {:.3f}", most));
   page.endRow();
 
@@ -260,9 +260,10 @@ void drawNumbers(Page& page, const Subject& subject) {
   std::vector<std::vector<std::string>> rows{
       {"elevation", "mean", "mean of its size", "RMS", "5 % below", "5 % above"}};
   for (const LeafErrors& e : errors)
-    rows.push_back({fmt::format("{:.1f}", glm::degrees(e.elevation)), fmt::format("{:+.4f}", e.mean),
-                    fmt::format("{:.4f}", e.mean_absolute), fmt::format("{:.4f}", e.rms),
-                    fmt::format("{:+.4f}", e.low), fmt::format("{:+.4f}", e.high)});
+    rows.push_back({fmt::format("{:.1f}", glm::degrees(e.elevation)),
+                    fmt::format("{:+.4f}", e.mean), fmt::format("{:.4f}", e.mean_absolute),
+                    fmt::format("{:.4f}", e.rms), fmt::format("{:+.4f}", e.low),
+                    fmt::format("{:+.4f}", e.high)});
   page.table(rows);
 }
 

@@ -101,7 +101,9 @@ LeafSet tileLeaves(std::span<const LeafSet> leaves, int columns) {
   };
   for (const auto side : {&LeafSet::front, &LeafSet::back}) {
     const auto of = [side](const auto map) {
-      return [side, map](const LeafSet& leaf) -> const auto& { return (leaf.*side).*map; };
+      return [ side, map ](const LeafSet& leaf) -> const auto& {
+        return (leaf.*side).*map;
+      };
     };
     LeafSide& out = atlas.*side;
     out.albedo = tile(of(&LeafSide::albedo), glm::vec3(0.0f));
@@ -109,8 +111,10 @@ LeafSet tileLeaves(std::span<const LeafSet> leaves, int columns) {
     out.normal = tile(of(&LeafSide::normal), glm::vec3(0, 0, 1));
     out.relief_mm = tile(of(&LeafSide::relief_mm), 0.0f);
   }
-  atlas.thickness_mm = tile([](const LeafSet& l) -> const auto& { return l.thickness_mm; }, 0.0f);
-  atlas.opacity = tile([](const LeafSet& l) -> const auto& { return l.opacity; }, 0.0f);
+  atlas.thickness_mm = tile(
+      [](const LeafSet& l) -> const auto& { return l.thickness_mm; }, 0.0f);
+  atlas.opacity = tile(
+      [](const LeafSet& l) -> const auto& { return l.opacity; }, 0.0f);
   return atlas;
 }
 

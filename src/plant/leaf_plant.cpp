@@ -50,9 +50,8 @@ int addCoefficients(Plant& plant, const LeafSet& set, const char* what,
     }
   offset = low;
   scale = std::max(high - low, 1e-6f);
-  return addTexture(plant, set, what, [&](std::size_t i) {
-    return glm::vec4((light[i] - offset) / scale, 1.0f);
-  });
+  return addTexture(plant, set, what,
+                    [&](std::size_t i) { return glm::vec4((light[i] - offset) / scale, 1.0f); });
 }
 
 /// A rectangle of these lengths, m, folded at its midrib and bent along it; lengths across and
@@ -67,7 +66,8 @@ struct Sheet {
     if (std::abs(bend) > 1e-4f)
       rib = glm::vec3(0.0f, std::sin(angle), std::cos(angle) - 1.0f) * (height / bend);
     const glm::vec3 normal(0.0f, std::sin(angle), std::cos(angle));
-    return rib + glm::vec3(x * std::cos(fold), 0.0f, 0.0f) + normal * (std::abs(x) * std::sin(fold));
+    return rib + glm::vec3(x * std::cos(fold), 0.0f, 0.0f) +
+           normal * (std::abs(x) * std::sin(fold));
   }
 };
 
@@ -88,8 +88,8 @@ std::uint32_t addLeafMaterial(Plant& plant, const LeafSet& set, const LeafTransl
   leaf.back_normal = addNormals(plant, set, "back_normal", set.back.normal);
   leaf.front_translucency = addColors(plant, set, "front_translucency", set.front.translucency);
   leaf.back_translucency = addColors(plant, set, "back_translucency", set.back.translucency);
-  leaf.front_light = addCoefficients(plant, set, "front_light", light.front, leaf.front_scale,
-                                     leaf.front_offset);
+  leaf.front_light =
+      addCoefficients(plant, set, "front_light", light.front, leaf.front_scale, leaf.front_offset);
   leaf.back_light =
       addCoefficients(plant, set, "back_light", light.back, leaf.back_scale, leaf.back_offset);
   leaf.front_roughness = set.optics.front_roughness;

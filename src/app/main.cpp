@@ -281,7 +281,8 @@ int run(int argc, char** argv) {
   render_app->add_option("-o,--output", render.output, "File to write: .png, or .exr in kcd/m^2")
       ->required();
   render_app
-      ->add_option("--light", render.light, "best, standard, expressive, transfer, depth-maps or habel")
+      ->add_option("--light", render.light,
+                   "best, standard, expressive, transfer, depth-maps or habel")
       ->capture_default_str();
   render_app->add_option("--terms", render.terms,
                          "Only these terms: ambient,diffuse,specular,shadow,textures,transmission,"

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "plant/gltf_accessor.h"
+#include "plant/gltf_leaf_material.h"
 #include "plant/gltf_scene.h"
 #include "plant/load.h"
 
@@ -177,6 +178,10 @@ class GltfImporter {
       }
       if (const Json* volume = extension(json, "KHR_materials_volume"))
         readThickness(*volume, color, who, m);
+      m.leaf = readLeafMaterial(document_, json, who, [&](const Json& info) {
+        const TextureUse map = readTexture(&info, who);
+        return map.sameUvs(color) ? map.texture : -1;
+      });
       const std::string mode = readString(json, "alphaMode", "OPAQUE");
       m.alpha_mode = mode == "MASK"    ? AlphaMode::kMask
                      : mode == "BLEND" ? AlphaMode::kBlend
@@ -225,6 +230,7 @@ class GltfImporter {
     }
     plant().textures = std::move(textures);
     for (Material& m : plant().materials) {
+      if (m.leaf) keepLeaf(kept, m);
       if (m.base_color_texture >= 0)
         m.base_color_texture = kept[static_cast<std::size_t>(m.base_color_texture)];
       if (m.normal_texture >= 0)
@@ -232,6 +238,21 @@ class GltfImporter {
       if (m.thickness_texture >= 0)
         m.thickness_texture = kept[static_cast<std::size_t>(m.thickness_texture)];
     }
+  }
+
+  /// A leaf with one map missing is lit as one without any.
+  void keepLeaf(const std::vector<int>& kept, Material& m) {
+    LeafTextures& leaf = *m.leaf;
+    bool whole = true;
+    for (int* texture : {&leaf.back_color, &leaf.back_normal, &leaf.front_translucency,
+                         &leaf.back_translucency, &leaf.front_light, &leaf.back_light}) {
+      *texture = *texture >= 0 ? kept[static_cast<std::size_t>(*texture)] : -1;
+      whole = whole && *texture >= 0;
+    }
+    if (whole) return;
+    m.leaf.reset();
+    plant().notes.push_back("material '" + m.name +
+                            "': a map of its leaves cannot be read; all are left out");
   }
 
   // --- meshes

@@ -4,7 +4,9 @@
 
 #include "plant/gltf_accessor.h"
 #include "plant/gltf_export.h"
+#include "plant/gltf_leaf_material.h"
 #include "plant/tangents.h"
+#include "shared/leaf_basis.h"
 
 namespace verdure {
 namespace {
@@ -86,7 +88,30 @@ class DocumentBuilder {
       json["alphaMode"] = "BLEND";
     }
     if (material.double_sided) json["doubleSided"] = true;
+    if (material.leaf)
+      for (const std::string& name : writeLeafMaterial(
+               *material.leaf, transmittedBy(*material.leaf),
+               [this](int texture) { return textureOf(texture); }, json)) {
+        Json& used = document_.json["extensionsUsed"];
+        if (std::find(used.begin(), used.end(), name) == used.end()) used.push_back(name);
+      }
     document_.json["materials"].push_back(std::move(json));
+  }
+
+  /// Share of even light from behind that gets through a leaf, over all of its map.
+  float transmittedBy(const LeafTextures& leaf) const {
+    const Image& light = plant_.textures[static_cast<std::size_t>(leaf.front_light)].image;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < light.rgba.size(); i += 4) {
+      glm::vec3 h;
+      for (int c = 0; c < 3; ++c)
+        h[c] = leaf.front_offset +
+               leaf.front_scale * static_cast<float>(light.rgba[i + static_cast<std::size_t>(c)]) /
+                   255.0f;
+      sum += double{shared::leafEvenDirection(h).z};
+    }
+    return static_cast<float>(sum /
+                              std::max<double>(static_cast<double>(light.rgba.size()) / 4.0, 1.0));
   }
 
   std::size_t addAccessor(std::vector<std::uint8_t> bytes, std::size_t count, const char* type,

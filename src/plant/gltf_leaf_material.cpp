@@ -1,0 +1,91 @@
+#include "plant/gltf_leaf_material.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace verdure {
+namespace {
+
+struct LeafTextureMember {
+  const char* key;
+  int LeafTextures::*texture;
+  float LeafTextures::*scale;  ///< null: of colours and normals
+  float LeafTextures::*offset;
+};
+constexpr std::array<LeafTextureMember, 6> kTextures{{
+    {"backColorTexture", &LeafTextures::back_color, nullptr, nullptr},
+    {"backNormalTexture", &LeafTextures::back_normal, nullptr, nullptr},
+    {"frontTranslucencyTexture", &LeafTextures::front_translucency, nullptr, nullptr},
+    {"backTranslucencyTexture", &LeafTextures::back_translucency, nullptr, nullptr},
+    {"frontLightTexture", &LeafTextures::front_light, &LeafTextures::front_scale,
+     &LeafTextures::front_offset},
+    {"backLightTexture", &LeafTextures::back_light, &LeafTextures::back_scale,
+     &LeafTextures::back_offset},
+}};
+
+struct LeafNumber {
+  const char* key;
+  float LeafTextures::*value;
+  double least, most;
+};
+constexpr std::array<LeafNumber, 3> kNumbers{{
+    {"frontRoughness", &LeafTextures::front_roughness, 0.0, 1.0},
+    {"backRoughness", &LeafTextures::back_roughness, 0.0, 1.0},
+    {"refractiveIndex", &LeafTextures::refractive_index, 1.0, 10.0},
+}};
+
+}  // namespace
+
+std::vector<std::string> writeLeafMaterial(const LeafTextures& leaf, float transmitted,
+                                           const std::function<int(int)>& texture_of,
+                                           Json& material) {
+  Json own = Json::object();
+  for (const LeafTextureMember& entry : kTextures) {
+    Json use = {{"index", texture_of(leaf.*entry.texture)}};
+    if (entry.scale != nullptr) {
+      use["scale"] = leaf.*entry.scale;
+      use["offset"] = leaf.*entry.offset;
+    }
+    own[entry.key] = std::move(use);
+  }
+  for (const LeafNumber& number : kNumbers) own[number.key] = leaf.*number.value;
+  material["extras"]["verdure"]["leaf"] = std::move(own);
+
+  // glTF's roughness squared is the width of its facets' slopes, as m is of Beckmann's.
+  material["pbrMetallicRoughness"]["roughnessFactor"] =
+      leaf.front_roughness > 0.0f ? std::sqrt(leaf.front_roughness) : 1.0f;
+  material["extensions"]["KHR_materials_ior"] = {{"ior", leaf.refractive_index}};
+  material["extensions"]["KHR_materials_diffuse_transmission"] = {
+      {"diffuseTransmissionFactor", std::clamp(transmitted, 0.0f, 1.0f)},
+      {"diffuseTransmissionColorTexture", {{"index", texture_of(leaf.front_translucency)}}}};
+  return {"KHR_materials_ior", "KHR_materials_diffuse_transmission"};
+}
+
+std::optional<LeafTextures> readLeafMaterial(const GltfDocument& document, const Json& material,
+                                             const std::string& who,
+                                             const std::function<int(const Json&)>& texture_of) {
+  const Json* extras = member(material, "extras");
+  const Json* verdure = extras == nullptr ? nullptr : member(*extras, "verdure");
+  const Json* own = verdure == nullptr ? nullptr : member(*verdure, "leaf");
+  if (own == nullptr) return std::nullopt;
+  LeafTextures leaf;
+  for (const LeafTextureMember& entry : kTextures) {
+    const Json* use = member(*own, entry.key);
+    if (use == nullptr)
+      document.fail(who + ": its leaf has no " + entry.key, "write the plant again with verdure");
+    leaf.*entry.texture = texture_of(*use);
+    if (entry.scale == nullptr) continue;
+    leaf.*entry.scale = static_cast<float>(readNumber(document, *use, "scale", 1.0, who));
+    leaf.*entry.offset = static_cast<float>(readNumber(document, *use, "offset", 0.0, who));
+  }
+  for (const LeafNumber& number : kNumbers) {
+    const double value = readNumber(document, *own, number.key, double{leaf.*number.value}, who);
+    if (value < number.least || value > number.most)
+      document.fail(who + ": its leaf's " + number.key + " is out of range");
+    leaf.*number.value = static_cast<float>(value);
+  }
+  return leaf;
+}
+
+}  // namespace verdure

@@ -152,10 +152,10 @@ std::string transmittancePlot(const LeafOptics& optics) {
   constexpr int kWidth = 560, kHeight = 360, kLeft = 60, kBottom = 320, kTop = 20;
   std::string svg = svgOpen(kWidth, kHeight);
   const auto x_of = [](double r) { return kLeft + r / 1.0 * (kWidth - kLeft - 20); };
-  const auto y_of = [](double t) {  // decades 1e-4 to 1e1
-    return kBottom - (std::log10(std::max(t, 1e-4)) + 4.0) / 5.0 * (kBottom - kTop);
+  const auto y_of = [](double t) {  // decades 1e-4 to 1e2
+    return kBottom - (std::log10(std::max(t, 1e-4)) + 4.0) / 6.0 * (kBottom - kTop);
   };
-  for (int decade = -4; decade <= 1; ++decade) {
+  for (int decade = -4; decade <= 2; ++decade) {
     const double y = y_of(std::pow(10.0, decade));
     svg += fmt::format(
         "<path d='M{} {:.1f}H{}' stroke='#ddd'/><text x='8' y='{:.1f}' font-size='12'>1e{}</text>",

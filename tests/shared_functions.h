@@ -31,7 +31,7 @@ struct SharedResults {
   vec4 leaf;       // visibilityShares, unpackVisibility of packVisibility
   vec4 basis;      // leafTranslucence, leafTransport
   vec4 through;    // leafBasis, leafDiffuseTranslucence
-  vec4 gloss;      // shIrradianceAlong / 4, cookTorrance
+  vec4 gloss;      // shIrradianceAlong, cookTorrance
   vec4 direction;  // leafDirection, z of leafEvenDirection
 };
 SHARED_SIZE(SharedResults, 240);
@@ -68,7 +68,7 @@ SHARED_FUNCTION SharedResults evaluateShared(vec4 a, vec4 b) {
   r.formula = vec4(skyLuminance(l, formula), 0.0f);
   vec4 weights[9];
   for (int i = 0; i < 9; ++i) {
-    weights[i] = a * cos(1.3f * float(i)) + b * cos(2.9f * float(i));
+    weights[i] = a * (1.0f - 0.21f * float(i)) + b * (0.17f * float(i) - 0.6f);
   }
   r.harmonics = vec4(shIrradiance(n, weights), 0.0f);
   vec3 bright = vec3(4.0f * a.x * a.x, 9.0f * a.y * a.y, 4.0f * a.z * a.z);
@@ -87,7 +87,7 @@ SHARED_FUNCTION SharedResults evaluateShared(vec4 a, vec4 b) {
   vec3 basis = leafBasis(vec3(l.x, l.y, abs(l.z)));
   r.basis = vec4(leafTranslucence(vec3(1.5f, 1.2f, 0.9f), color, coefficients, behind),
                  leafTransport(coefficients, behind));
-  r.gloss = vec4(0.25f * shIrradianceAlong(n, n + 0.5f * l, weights),
+  r.gloss = vec4(shIrradianceAlong(n, n + 0.5f * l, weights),
                  cookTorrance(n, l, v, 0.1f + 0.4f * a.x, 1.2f + 0.5f * b.y));
   r.direction = vec4(leafDirection(coefficients), leafEvenDirection(coefficients).z);
   r.through = vec4(basis, leafDiffuseTranslucence(vec3(2.0f), color, a.x, behind).y);

@@ -12,10 +12,11 @@ void main() {
   vec2 texel = 1.0 / vec2(textureSize(shadow_depth, 0).xy);
   vec2 corner = floor(gl_FragCoord.xy) * float(blockerBlock()) * texel;
   vec2 sum = vec2(0.0);
-  // A quarter of the texels, in rows set off against each other: nothing thin slips through.
-  for (int y = 1; y < blockerBlock(); y += 4)
-    for (int x = 1 + (y / 2) % 4; x < blockerBlock(); x += 4) {
-      vec3 at = vec3(corner + vec2(x, y) * texel, float(cascade));  // amid four texels
+  // A quarter of all squares of four texels, two in each row and column of squares: nothing thin
+  // that lies along them slips through.
+  for (int row = 0; row < blockerBlock() / 2; ++row)
+    for (int column = 2 * (row & 1) + ((row >> 1) & 1); column < blockerBlock() / 2; column += 4) {
+      vec3 at = vec3(corner + (2.0 * vec2(column, row) + 1.0) * texel, float(cascade));
       LeafLayers leaves = leafLayers(textureLod(foliage_map, at, 0.0));
       sum += leaves.covered * vec2(0.5 * (leaves.near + leaves.far), 1.0);
       vec4 depth = textureGather(shadow_depth, at);

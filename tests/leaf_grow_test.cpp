@@ -209,7 +209,7 @@ TEST_P(Venation, IsATreeInsideTheOutline) {
 
 TEST_P(Venation, ReachesEveryPlaceOfTheBlade) {
   const GrownLeaf leaf = growForm(species(), 2);
-  const LeafFrame frame = frameOf(leaf.form.outline, 96);
+  const LeafFrame frame{96, frameExtent(leaf.form.outline)};
   const std::vector<float> depth = signedDistance(leaf.form.outline, 5, frame);
   const VenationOptions& options = species().veins;
   // The nearest candidate for a source, what kept it from being one, and how near sources are

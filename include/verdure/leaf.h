@@ -59,6 +59,9 @@ struct LeafSet {
 /// ranges.
 void checkLeafSet(const LeafSet& set, const std::string& where);
 
+/// A rectangle of a leaf's maps. Throws Error unless it has texels and lies in them.
+LeafSet cropLeaf(const LeafSet& set, int x, int y, int width, int height);
+
 /// Several leaves as one set, in rows from the top: an atlas for a plant. All must have one size
 /// and scale; the optics are the first one's. Throws Error.
 LeafSet tileLeaves(std::span<const LeafSet> leaves, int columns);

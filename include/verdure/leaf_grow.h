@@ -30,6 +30,11 @@ struct LeafGrowOptions {
 /// Throws Error for an unknown species, a size out of range or an age outside of [0, 1].
 LeafSet growLeaf(const LeafGrowOptions& options);
 
+/// Several leaves of one tree, of the seeds options.seed, options.seed + 1 ...: as growLeaf()
+/// makes them but in one frame, that of the largest, so that tileLeaves() takes them. `count` is 1
+/// to 1024.
+std::vector<LeafSet> growLeaves(const LeafGrowOptions& options, int count);
+
 struct LeafSpeciesInfo {
   std::string name;   ///< as given to LeafGrowOptions::species; those of grow()
   std::string title;  ///< "Quaking aspen (Populus tremuloides)"

@@ -11,12 +11,33 @@
 
 namespace verdure {
 
-/// A grown leaf before it is painted.
+/// A round thing seen from the front: a polyline with a radius at each point, mm.
+struct Rod {
+  enum class Part { kNeedle, kTwig };
+  Polyline points;
+  std::vector<float> radii;
+  float height = 0;  ///< towards the viewer, [-1, 1]: which rod hides which
+  float shade = 1, old = 0;
+  Part part = Part::kNeedle;
+  float length = 0;
+};
+/// A shoot's axis and needles, from the nearest to the farthest.
+std::vector<Rod> makeRods(std::uint32_t seed);
+
+/// A grown leaf before it is painted: a blade or a shoot.
 struct GrownLeaf {
   LeafPlan form;
   std::vector<VeinNode> veins;
+  std::vector<Rod> rods;  ///< of a shoot; empty: a blade
 };
 GrownLeaf growForm(const LeafSpecies& species, std::uint32_t seed);
+/// Those of the seeds seed, seed + 1 ...
+std::vector<GrownLeaf> growForms(const LeafSpecies& species, std::uint32_t seed, int count);
+
+/// Points, mm, whose convex hull holds the leaf; a blade's are its outline.
+Polyline silhouetteOf(const GrownLeaf& leaf);
+/// LeafFrame::extent_mm of the smallest frame that shows each of the leaves.
+float frameExtent(const std::vector<GrownLeaf>& leaves);
 
 struct BladeFields {
   LeafFrame frame;
@@ -29,7 +50,7 @@ struct BladeFields {
   float edge_reach = 0;
   float stalk_radius = 0;  ///< mm
 };
-BladeFields rasterise(const GrownLeaf& leaf, const LeafSpecies& species, int size);
+BladeFields rasterise(const GrownLeaf& leaf, const LeafSpecies& species, const LeafFrame& frame);
 
 /// What time does to a leaf, texel by texel.
 struct Blemishes {
@@ -54,7 +75,12 @@ void setNormals(LeafSide& side, int size, float mm_per_texel);
 std::vector<std::uint8_t> insideOf(const LeafSet& set);
 
 /// A shoot with needles: all maps.
-LeafSet growShoot(const LeafSpecies& species, const LeafGrowOptions& options);
+LeafSet paintShoot(const GrownLeaf& leaf, const LeafSpecies& species, const LeafFrame& frame,
+                   const LeafGrowOptions& options);
+
+/// The maps of leaves that growForms() made of options.seed.
+std::vector<LeafSet> paintLeaves(const std::vector<GrownLeaf>& leaves, const LeafSpecies& species,
+                                 const LeafFrame& frame, const LeafGrowOptions& options);
 
 }  // namespace verdure
 

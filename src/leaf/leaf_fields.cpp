@@ -1,21 +1,48 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "leaf/grown_leaf.h"
 
 namespace verdure {
 
 GrownLeaf growForm(const LeafSpecies& species, std::uint32_t seed) {
   GrownLeaf leaf;
+  if (!species.form) {
+    leaf.rods = makeRods(seed);
+    return leaf;
+  }
   leaf.form = species.form(seed);
   leaf.veins = growVenation(leaf.form, species.veins, seed);
   return leaf;
 }
 
-BladeFields rasterise(const GrownLeaf& leaf, const LeafSpecies& species, int size) {
+std::vector<GrownLeaf> growForms(const LeafSpecies& species, std::uint32_t seed, int count) {
+  std::vector<GrownLeaf> leaves(static_cast<std::size_t>(count));
+  parallelFor(leaves.size(), 1, [&](std::size_t k) {
+    leaves[k] = growForm(species, seed + static_cast<std::uint32_t>(k));
+  });
+  return leaves;
+}
+
+Polyline silhouetteOf(const GrownLeaf& leaf) {
+  Polyline points = leaf.form.outline;
+  for (const Rod& rod : leaf.rods)
+    for (std::size_t i = 0; i < rod.points.size(); ++i)
+      for (const glm::vec2 side : {glm::vec2(1, 1), {1, -1}, {-1, 1}, {-1, -1}})
+        points.push_back(rod.points[i] + std::max(rod.radii[i], 1.0f) * side);
+  return points;
+}
+
+float frameExtent(const std::vector<GrownLeaf>& leaves) {
+  float extent = 0;
+  for (const GrownLeaf& leaf : leaves) extent = std::max(extent, frameExtent(silhouetteOf(leaf)));
+  return extent;
+}
+
+BladeFields rasterise(const GrownLeaf& leaf, const LeafSpecies& species, const LeafFrame& frame) {
   BladeFields fields;
-  fields.frame = frameOf(leaf.form.outline, size);
-  const LeafFrame& frame = fields.frame;
+  fields.frame = frame;
   fields.coverage = coverageOf(leaf.form.outline, frame);
   fields.edge_reach = 0.06f * frame.extent_mm;
   fields.edge = signedDistance(leaf.form.outline, fields.edge_reach, frame);
@@ -48,7 +75,7 @@ BladeFields rasterise(const GrownLeaf& leaf, const LeafSpecies& species, int siz
   const float radius = fields.stalk_radius = leaf.form.stalk_radius;
   fields.stalk = distanceTo(stalk, 3 * radius, frame);
   for (std::size_t i = 0; i < fields.stalk.size(); ++i) {
-    const auto row = static_cast<float>(i / static_cast<std::size_t>(size)) + 0.5f;
+    const auto row = static_cast<float>(i / static_cast<std::size_t>(frame.size)) + 0.5f;
     const float y = frame.toMm({0, row}).y - leaf.form.blade_base;
     fields.stalk[i] = (1 - glm::smoothstep(1.25f * radius, 2.2f * radius, fields.stalk[i])) *
                       (1 - glm::smoothstep(-3 * radius, 3 * radius, y));

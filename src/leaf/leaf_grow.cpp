@@ -21,9 +21,9 @@ void checkOptions(const LeafGrowOptions& options) {
                 "take 0 (spring) to 1 (autumn)");
 }
 
-LeafSet growBlade(const LeafSpecies& species, const LeafGrowOptions& options) {
-  const GrownLeaf leaf = growForm(species, options.seed);
-  const BladeFields fields = rasterise(leaf, species, options.size);
+LeafSet paintBlade(const GrownLeaf& leaf, const LeafSpecies& species, const LeafFrame& frame,
+                   const LeafGrowOptions& options) {
+  const BladeFields fields = rasterise(leaf, species, frame);
   const Blemishes blemishes = blemish(leaf, fields, species, options);
   LeafSet set;
   set.width = set.height = options.size;
@@ -51,19 +51,38 @@ void limitLight(LeafSet& set) {
 }  // namespace
 
 LeafSet growLeaf(const LeafGrowOptions& options) {
+  return std::move(growLeaves(options, 1).front());
+}
+
+std::vector<LeafSet> growLeaves(const LeafGrowOptions& options, int count) {
   const LeafSpecies& species = findLeafSpecies(options.species);
+  if (count < 1 || count > 1024)
+    throw Error("leaves", fmt::format("{} of them are out of range", count), "take 1 to 1024");
+  const std::vector<GrownLeaf> leaves = growForms(species, options.seed, count);
+  return paintLeaves(leaves, species, {options.size, frameExtent(leaves)}, options);
+}
+
+std::vector<LeafSet> paintLeaves(const std::vector<GrownLeaf>& leaves, const LeafSpecies& species,
+                                 const LeafFrame& frame, const LeafGrowOptions& options) {
   checkOptions(options);
-  LeafSet set = species.form ? growBlade(species, options) : growShoot(species, options);
-  set.name = species.info.name;
-  set.optics.front_roughness =
-      glm::mix(species.roughness, 0.45f, options.age * options.age * options.age);
-  const std::vector<std::uint8_t> inside = insideOf(set);
-  for (LeafSide* side : {&set.front, &set.back})
-    for (std::vector<glm::vec3>* map : {&side->albedo, &side->translucency})
-      fillOutside(*map, inside, set.width, set.height);
-  limitLight(set);
-  checkLeafSet(set, "grown leaf " + options.species);
-  return set;
+  std::vector<LeafSet> sets(leaves.size());
+  parallelFor(leaves.size(), 1, [&](std::size_t k) {
+    LeafGrowOptions own = options;
+    own.seed = options.seed + static_cast<std::uint32_t>(k);
+    LeafSet& set = sets[k];
+    set = leaves[k].rods.empty() ? paintBlade(leaves[k], species, frame, own)
+                                 : paintShoot(leaves[k], species, frame, own);
+    set.name = species.info.name;
+    set.optics.front_roughness =
+        glm::mix(species.roughness, 0.45f, options.age * options.age * options.age);
+    const std::vector<std::uint8_t> inside = insideOf(set);
+    for (LeafSide* side : {&set.front, &set.back})
+      for (std::vector<glm::vec3>* map : {&side->albedo, &side->translucency})
+        fillOutside(*map, inside, set.width, set.height);
+    limitLight(set);
+    checkLeafSet(set, "grown leaf " + species.info.name);
+  });
+  return sets;
 }
 
 }  // namespace verdure

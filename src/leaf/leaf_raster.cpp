@@ -69,14 +69,14 @@ float squaredDistance(const glm::vec2& p, const Stroke& s, float& t) {
 
 }  // namespace
 
-LeafFrame frameOf(const Polyline& outline, int size) {
+float frameExtent(const Polyline& outline) {
   float half = 0, top = 0;
   for (const glm::vec2& p : outline) {
     half = std::max(half, std::abs(p.x));
     top = std::max(top, p.y);
   }
   constexpr float kMargin = 0.015f;
-  return {size, std::max(top * (1 + kMargin), 2 * half * (1 + 2 * kMargin))};
+  return std::max(top * (1 + kMargin), 2 * half * (1 + 2 * kMargin));
 }
 
 std::vector<float> coverageOf(const Polyline& polygon, const LeafFrame& frame) {

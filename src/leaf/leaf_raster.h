@@ -27,8 +27,8 @@ struct LeafFrame {
   }
 };
 
-/// The smallest frame that shows the polygon with a margin.
-LeafFrame frameOf(const Polyline& outline, int size);
+/// LeafFrame::extent_mm of the smallest frame that shows the polygon with a margin.
+float frameExtent(const Polyline& outline);
 
 /// Share of each texel that a simple polygon (mm) covers, exactly: size x size values in [0, 1].
 std::vector<float> coverageOf(const Polyline& polygon, const LeafFrame& frame);

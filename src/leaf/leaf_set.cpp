@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <type_traits>
 
 #include "verdure/error.h"
 #include "verdure/leaf.h"
@@ -26,6 +27,40 @@ void checkMap(const LeafSet& set, const std::vector<T>& map, const char* name, c
                 fmt::format("the map {} is not {} at ({}, {})", name, range, i % width, i / width),
                 "mend that map");
   }
+}
+
+/// Fills all maps of `out` from those of the leaves: make(map of a leaf by its number, value where
+/// there is no leaf) gives one.
+template <typename Make>
+void makeMaps(LeafSet& out, std::span<const LeafSet> leaves, const Make& make) {
+  for (const auto side : {&LeafSet::front, &LeafSet::back}) {
+    const auto of = [&leaves, side](const auto map) {
+      return [&leaves, side, map ](std::size_t k) -> const auto& {
+        return (leaves[k].*side).*map;
+      };
+    };
+    LeafSide& filled = out.*side;
+    filled.albedo = make(of(&LeafSide::albedo), glm::vec3(0.0f));
+    filled.translucency = make(of(&LeafSide::translucency), glm::vec3(0.0f));
+    filled.normal = make(of(&LeafSide::normal), glm::vec3(0, 0, 1));
+    filled.relief_mm = make(of(&LeafSide::relief_mm), 0.0f);
+  }
+  const auto of = [&leaves](const auto map) {
+    return [&leaves, map ](std::size_t k) -> const auto& {
+      return leaves[k].*map;
+    };
+  };
+  out.thickness_mm = make(of(&LeafSet::thickness_mm), 0.0f);
+  out.opacity = make(of(&LeafSet::opacity), 0.0f);
+}
+
+/// Copies a rectangle of a map into another.
+template <typename T>
+void copyTexels(const std::vector<T>& from, int from_width, int x0, int y0, int width, int height,
+                std::vector<T>& to, int to_width, int to_x, int to_y) {
+  for (int y = 0; y < height; ++y)
+    std::copy_n(from.begin() + std::ptrdiff_t{y0 + y} * from_width + x0, width,
+                to.begin() + std::ptrdiff_t{to_y + y} * to_width + to_x);
 }
 
 }  // namespace
@@ -71,6 +106,28 @@ void checkLeafSet(const LeafSet& set, const std::string& where) {
       throw Error(where, "the leaf is 0 mm thick somewhere", "mend its thickness map");
 }
 
+LeafSet cropLeaf(const LeafSet& set, int x, int y, int width, int height) {
+  checkLeafSet(set, set.name);
+  if (width < 1 || height < 1 || x < 0 || y < 0 || x > set.width - width || y > set.height - height)
+    throw Error(set.name,
+                fmt::format("{} x {} texels at ({}, {}) are not within its {} x {}", width, height,
+                            x, y, set.width, set.height),
+                "crop a part of the leaf");
+  LeafSet out;
+  out.name = set.name;
+  out.width = width;
+  out.height = height;
+  out.mm_per_texel = set.mm_per_texel;
+  out.optics = set.optics;
+  out.notes = set.notes;
+  makeMaps(out, {&set, 1}, [&](const auto& map_of, const auto& empty) {
+    std::vector<std::decay_t<decltype(empty)>> map(out.texelCount());
+    copyTexels(map_of(0), set.width, x, y, width, height, map, width, 0, 0);
+    return map;
+  });
+  return out;
+}
+
 LeafSet tileLeaves(std::span<const LeafSet> leaves, int columns) {
   const std::string where = "an atlas of leaves";
   if (leaves.empty() || columns < 1) throw Error(where, "has no leaves", "give it at least one");
@@ -87,34 +144,14 @@ LeafSet tileLeaves(std::span<const LeafSet> leaves, int columns) {
   atlas.height = rows * leaves[0].height;
   atlas.mm_per_texel = leaves[0].mm_per_texel;
   atlas.optics = leaves[0].optics;
-  const auto tile = [&](const auto& map_of, auto empty) {
-    std::vector<decltype(empty)> out(atlas.texelCount(), empty);
-    for (std::size_t k = 0; k < leaves.size(); ++k) {
-      const std::vector<decltype(empty)>& map = map_of(leaves[k]);
-      const int x0 = static_cast<int>(k) % columns * leaves[0].width;
-      const int y0 = static_cast<int>(k) / columns * leaves[0].height;
-      for (int y = 0; y < leaves[0].height; ++y)
-        std::copy_n(map.begin() + std::ptrdiff_t{y} * leaves[0].width, leaves[0].width,
-                    out.begin() + std::ptrdiff_t{y0 + y} * atlas.width + x0);
-    }
-    return out;
-  };
-  for (const auto side : {&LeafSet::front, &LeafSet::back}) {
-    const auto of = [side](const auto map) {
-      return [ side, map ](const LeafSet& leaf) -> const auto& {
-        return (leaf.*side).*map;
-      };
-    };
-    LeafSide& out = atlas.*side;
-    out.albedo = tile(of(&LeafSide::albedo), glm::vec3(0.0f));
-    out.translucency = tile(of(&LeafSide::translucency), glm::vec3(0.0f));
-    out.normal = tile(of(&LeafSide::normal), glm::vec3(0, 0, 1));
-    out.relief_mm = tile(of(&LeafSide::relief_mm), 0.0f);
-  }
-  atlas.thickness_mm = tile(
-      [](const LeafSet& l) -> const auto& { return l.thickness_mm; }, 0.0f);
-  atlas.opacity = tile(
-      [](const LeafSet& l) -> const auto& { return l.opacity; }, 0.0f);
+  makeMaps(atlas, leaves, [&](const auto& map_of, const auto& empty) {
+    std::vector<std::decay_t<decltype(empty)>> map(atlas.texelCount(), empty);
+    for (std::size_t k = 0; k < leaves.size(); ++k)
+      copyTexels(map_of(k), leaves[0].width, 0, 0, leaves[0].width, leaves[0].height, map,
+                 atlas.width, static_cast<int>(k) % columns * leaves[0].width,
+                 static_cast<int>(k) / columns * leaves[0].height);
+    return map;
+  });
   return atlas;
 }
 

@@ -11,27 +11,17 @@
 namespace verdure {
 namespace {
 
-enum class Part { kNeedle, kTwig };
-
-/// A round thing seen from the front: a polyline with a radius at each point, mm.
-struct Rod {
-  Polyline points;
-  std::vector<float> radii;
-  float height = 0;  ///< towards the viewer, [-1, 1]: which rod hides which
-  float shade = 1, old = 0;
-  Part part = Part::kNeedle;
-  float length = 0;
-};
-
 constexpr float kTwigLength = 92, kTwigRadius = 2.0f;
 constexpr float kSheath = 5;     ///< brown foot of a pair of needles
 constexpr float kLayer = 0.45f;  ///< half the depth that all rods share, mm: pressed flat
+
+}  // namespace
 
 std::vector<Rod> makeRods(std::uint32_t seed) {
   Random random(hash(seed ^ 0x70696e65ull));
   std::vector<Rod> rods;
   Rod twig;
-  twig.part = Part::kTwig;
+  twig.part = Rod::Part::kTwig;
   const float sway = random.vary(4.0f);
   const auto axis = [&](float y) {
     const float t = y / kTwigLength;
@@ -89,6 +79,8 @@ std::vector<Rod> makeRods(std::uint32_t seed) {
   return rods;
 }
 
+namespace {
+
 /// Where a texel lies on a rod.
 struct Place {
   float cover = 0;   ///< of the texel, [0, 1]
@@ -138,7 +130,7 @@ Paint paintRod(const Rod& rod, const Place& place, const LeafSpecies& species, f
   pigments.carotenoid += 0.5f * glm::smoothstep(0.955f, 1.0f, tip);
   const float sheath = 1 - glm::smoothstep(0.75f * kSheath, kSheath, place.along);
   pigments = mix(pigments, {0.02f, 0.15f, 0.05f, 0.85f + 0.6f * noise}, sheath);
-  if (rod.part == Part::kTwig) {
+  if (rod.part == Rod::Part::kTwig) {
     pigments = species.stalk;
     pigments.tannin *= 1 + 0.8f * noise;
     pigments.chlorophyll *= 1 + 0.8f * noise;
@@ -147,10 +139,10 @@ Paint paintRod(const Rod& rod, const Place& place, const LeafSpecies& species, f
   Paint paint{reflected(depth, 1.0f, 0.02f),
               reflected(depth, species.back_path, 0.02f) + species.back_bloom,
               transmitted(depth, 1.15f)};
-  const float wax = rod.part == Part::kNeedle ? 1 - sheath : 0.0f;
+  const float wax = rod.part == Rod::Part::kNeedle ? 1 - sheath : 0.0f;
   paint.front += wax * glm::vec3(0.006f, 0.010f, 0.016f);  // bluish
   paint.back += wax * glm::vec3(0.006f, 0.010f, 0.016f);
-  if (rod.part == Part::kTwig) paint.through *= 0.1f;
+  if (rod.part == Rod::Part::kTwig) paint.through *= 0.1f;
   // Thickest along the axis.
   paint.through *= 1 - 0.35f * (1 - place.across * place.across);
   return paint;
@@ -158,15 +150,8 @@ Paint paintRod(const Rod& rod, const Place& place, const LeafSpecies& species, f
 
 }  // namespace
 
-LeafSet growShoot(const LeafSpecies& species, const LeafGrowOptions& options) {
-  const std::vector<Rod> rods = makeRods(options.seed);
-  Polyline all;
-  for (const Rod& rod : rods)
-    for (const glm::vec2& p : rod.points) {
-      all.push_back(p + 1.0f);
-      all.push_back(p - 1.0f);
-    }
-  const LeafFrame frame = frameOf(all, options.size);
+LeafSet paintShoot(const GrownLeaf& leaf, const LeafSpecies& species, const LeafFrame& frame,
+                   const LeafGrowOptions& options) {
   const float mm = frame.mmPerTexel();
   const auto n = static_cast<std::size_t>(options.size);
   LeafSet set;
@@ -184,7 +169,7 @@ LeafSet growShoot(const LeafSpecies& species, const LeafGrowOptions& options) {
   constexpr std::size_t kTile = 16;
   const std::size_t tiles = (n + kTile - 1) / kTile;
   std::vector<std::vector<const Rod*>> near(tiles * tiles);
-  for (const Rod& rod : rods)
+  for (const Rod& rod : leaf.rods)
     for (std::size_t ty = 0; ty < tiles; ++ty)
       for (std::size_t tx = 0; tx < tiles; ++tx) {
         const glm::vec2 center = frame.toMm((glm::vec2(tx, ty) + 0.5f) * static_cast<float>(kTile));

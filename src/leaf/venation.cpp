@@ -47,7 +47,7 @@ class PointGrid {
 class Depth {
  public:
   Depth(const Polyline& outline, int size)
-      : frame_(frameOf(outline, size)),
+      : frame_{size, frameExtent(outline)},
         values_(signedDistance(outline, 0.08f * frame_.extent_mm, frame_)) {}
   const LeafFrame& frame() const { return frame_; }
   float operator()(const glm::vec2& mm) const {

@@ -1,6 +1,7 @@
 #include <benchmark/benchmark.h>
 
 #include "base/parallel.h"
+#include "plant/leaf_shape.h"
 #include "plant/species.h"
 #include "plant/tree_mesh.h"
 #include "plant/weber_penn.h"
@@ -16,14 +17,22 @@ const Species& speciesOf(const benchmark::State& state) {
   return allSpecies()[static_cast<std::size_t>(state.range(0))];
 }
 
+LeafShape leafOf(const Species& species) {
+  return static_cast<LeafShape>(static_cast<int>(species.parameters.leaf_shape));
+}
+
+LeafAtlas leavesOf(const Species& species, int size) {
+  return growLeafAtlas(leafSpeciesOf(leafOf(species)), size, 0.4f);
+}
+
 /// Makes a tree without textures; returns the number of leaves.
-std::size_t shape(const Species& species, const TreeParameters& parameters) {
+std::size_t shape(const Species& species, const TreeParameters& parameters,
+                  const LeafAtlas& atlas) {
   const Skeleton skeleton = growSkeleton(parameters, 1);
   Plant plant;
   plant.meshes.push_back(meshStems(skeleton, parameters, species.bark.width_m, 0.0f, 1e9f));
-  plant.meshes.push_back(meshLeaves(skeleton,
-                                    static_cast<LeafShape>(static_cast<int>(parameters.leaf_shape)),
-                                    species.blade, LeafForm::kMesh, 1, plant));
+  plant.meshes.push_back(meshLeaves(skeleton, atlas, species.blade, LeafForm::kMesh,
+                                    leafOf(species) == LeafShape::kNeedles, 1, plant));
   benchmark::DoNotOptimize(plant.meshes.data());
   return plant.leaves.size();
 }
@@ -42,8 +51,9 @@ void Grow(benchmark::State& state) {
 void Shape(benchmark::State& state) {
   setThreadCount(static_cast<int>(state.range(1)));
   const Species& species = speciesOf(state);
+  const LeafAtlas atlas = leavesOf(species, 32);
   std::size_t leaves = 0;
-  for (auto _ : state) leaves = shape(species, species.parameters);
+  for (auto _ : state) leaves = shape(species, species.parameters, atlas);
   state.SetLabel(species.info.name);
   state.counters["leaves"] = static_cast<double>(leaves);
   setThreadCount(0);
@@ -54,8 +64,9 @@ void FortyThousandLeaves(benchmark::State& state) {
   const Species& aspen = findSpecies("quaking-aspen");
   TreeParameters parameters = aspen.parameters;
   setParameters(parameters, "ScaleV=0 Leaves=45");
+  const LeafAtlas atlas = leavesOf(aspen, 32);
   std::size_t leaves = 0;
-  for (auto _ : state) leaves = shape(aspen, parameters);
+  for (auto _ : state) leaves = shape(aspen, parameters, atlas);
   state.counters["leaves"] = static_cast<double>(leaves);
   setThreadCount(0);
 }
@@ -65,10 +76,7 @@ void Textures(benchmark::State& state) {
   const Species& species = speciesOf(state);
   for (auto _ : state) {
     benchmark::DoNotOptimize(makeBark(species.bark, 512, 1).color.rgba.data());
-    benchmark::DoNotOptimize(
-        makeLeafTexture(static_cast<LeafShape>(static_cast<int>(species.parameters.leaf_shape)),
-                        species.leaf, species.parameters.leaf_scale_x, 512, 1)
-            .rgba.data());
+    benchmark::DoNotOptimize(leavesOf(species, 512).light.front.data());
   }
   state.SetLabel(species.info.name);
   setThreadCount(0);

@@ -318,7 +318,7 @@ TEST(Grow, DiffersBySeed) {
 TEST(Grow, ClosesStemsOfEveryTaper) {
   for (const char* taper : {"0", "0.5", "1", "1.4", "2", "2.5", "3"}) {
     GrowOptions options;
-    options.texture_size = 16;
+    options.texture_size = 32;
     options.set = {{"0Taper", taper}, {"1Taper", taper},    {"2Branches", "3"}, {"1Branches", "8"},
                    {"Leaves", "0"},   {"LobeDepth", "0.3"}, {"Lobes", "7"},     {"Ratio", "0.04"}};
     const Plant plant = grow(options);
@@ -382,7 +382,7 @@ TEST(Grow, StaysSoundAtTheEdgesOfItsRanges) {
         Set{{"Shape", "8"}, {"PrunePowerLow", "10"}, {"PrunePowerHigh", "0.0001"}},
         Set{{"0BaseSplits", "30"}, {"0SplitAngle", "180"}, {"Levels", "1"}}}) {
     GrowOptions options;
-    options.texture_size = 16;
+    options.texture_size = 32;
     options.set = set;
     const Plant plant = grow(options);
     for (const Mesh& mesh : plant.meshes)
@@ -396,7 +396,7 @@ TEST(Grow, StaysSoundAtTheEdgesOfItsRanges) {
 
 TEST(Grow, PutsLeavesInAFan) {
   GrowOptions options;
-  options.texture_size = 16;
+  options.texture_size = 32;
   options.set = {{"Leaves", "-7"}, {"3Rotate", "120"}, {"1Branches", "5"}, {"2Branches", "4"}};
   const Plant plant = grow(options);
   std::map<std::uint32_t, int> count;
@@ -412,7 +412,7 @@ TEST(Grow, PutsLeavesInAFan) {
 TEST(Grow, KeepsLeafAreaWhenQualityFalls) {
   const auto areaAt = [](const char* quality) {
     GrowOptions options;
-    options.texture_size = 16;
+    options.texture_size = 32;
     options.set = {{"LeafQuality", quality}};
     const Plant plant = grow(options);
     double sum = 0;

@@ -8,8 +8,6 @@
 #include <cmath>
 
 #include "plant/bark_texture.h"
-#include "plant/leaf_shape.h"
-#include "plant/leaf_texture.h"
 #include "plant/species.h"
 
 namespace verdure {
@@ -309,64 +307,6 @@ TEST(Leaves, GoToLongStemsByLength) {
   EXPECT_LT(spread(by_length), 1.4f);
   EXPECT_NEAR(static_cast<double>(by_length.leaves.size()), static_cast<double>(even.leaves.size()),
               0.15 * static_cast<double>(even.leaves.size()));
-}
-
-TEST(Hull, HoldsTheOutline) {
-  for (int s = 0; s < kLeafShapeCount; ++s) {
-    const auto shape = static_cast<LeafShape>(s);
-    std::vector<glm::vec2> hull{{0, 0}};
-    for (const glm::vec2& p : leafHull(shape)) hull.push_back(p);
-    hull.push_back({0, 1});
-    for (const glm::vec2& p : leafOutline(shape)) {
-      if (p.y < 0.05f || p.y > 0.98f) continue;  // the foot of the stalk and the tip are cut
-      for (std::size_t k = 0; k + 1 < hull.size(); ++k)
-        if (p.y >= hull[k].y && p.y <= hull[k + 1].y) {
-          const float t = (p.y - hull[k].y) / (hull[k + 1].y - hull[k].y);
-          const float width = glm::mix(hull[k].x, hull[k + 1].x, t);
-          EXPECT_LE(std::abs(p.x), width + 0.012f) << s << " at " << p.y;
-        }
-    }
-  }
-}
-
-TEST(LeafTexture, HasCrispEdgesAndNoFringe) {
-  for (const Species& species : allSpecies()) {
-    const auto shape = static_cast<LeafShape>(static_cast<int>(species.parameters.leaf_shape));
-    const int size = 256;
-    const Image image =
-        makeLeafTexture(shape, species.leaf, species.parameters.leaf_scale_x, size, 1);
-    ASSERT_EQ(image.width, size);
-    int covered = 0, between = 0, worst = 0;
-    for (int y = 0; y < size; ++y)
-      for (int x = 0; x < size; ++x) {
-        const std::uint8_t* pixel = image.at(x, y);
-        covered += pixel[3] >= 128;
-        between += pixel[3] > 12 && pixel[3] < 243;
-        if (pixel[3] != 0) continue;
-        for (int dy = -2; dy <= 2; ++dy)
-          for (int dx = -2; dx <= 2; ++dx) {
-            if (x + dx < 0 || y + dy < 0 || x + dx >= size || y + dy >= size) continue;
-            const std::uint8_t* near = image.at(x + dx, y + dy);
-            if (near[3] != 255) continue;
-            for (int c = 0; c < 3; ++c) worst = std::max(worst, std::abs(pixel[c] - near[c]));
-          }
-      }
-    const double pixels = size * size;
-    const bool needles = shape == LeafShape::kNeedles;
-    EXPECT_GT(covered / pixels, needles ? 0.25 : 0.3) << species.info.name;
-    EXPECT_LT(between / pixels, needles ? 0.3 : 0.1) << species.info.name;
-    EXPECT_LT(worst, 90) << species.info.name;
-    // Coverage hugs the geometry: the share of the hull that the outline fills.
-    float hull = 0;
-    glm::vec2 last(0, 0);
-    auto right = leafHull(shape);
-    right.emplace_back(0, 1);
-    for (const glm::vec2& p : right) {
-      hull += (last.x + p.x) * (p.y - last.y);
-      last = p;
-    }
-    EXPECT_GT(covered / pixels / hull, needles ? 0.3 : 0.5) << species.info.name;
-  }
 }
 
 TEST(Bark, TilesInBothDirections) {

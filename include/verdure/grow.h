@@ -22,12 +22,14 @@ struct GrowOptions {
   /// {"1CurveV", "40"}. Angles in degrees, lengths in metres, as in the paper. Added to them:
   /// LeafBend, LeafDistrib and LeafQuality (constants in the paper's text).
   std::vector<std::pair<std::string, std::string>> set;
-  int texture_size = 512;  ///< side of the bark and leaf textures, pixels; even, 16 to 8192
+  int texture_size = 512;  ///< side of the textures, pixels: a multiple of 4, 32 to 8192
+  float leaf_age = 0.4f;   ///< [0, 1]: 0 fresh in spring, 0.4 summer, 1 autumn
 };
 
 /// Grows a tree by the model of Weber and Penn, "Creation and Rendering of Realistic Trees",
 /// SIGGRAPH 1995. The plant stands on the origin, +Y up; its branches, leaves, materials and
-/// textures are filled in. The same options give the same plant on every machine with the same
+/// textures are filled in. Leaves are four of growLeaf(), with the light through them
+/// (addLeafMaterial()). The same options give the same plant on every machine with the same
 /// floating-point arithmetic, for any number of threads. Throws Error for an unknown species or
 /// parameter, or a value out of range.
 ///

@@ -165,6 +165,8 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   grow_app->add_option("--texture-size", grow.grow.texture_size, "Side of its textures, pixels")
       ->capture_default_str();
+  grow_app->add_option("--leaf-age", grow.grow.leaf_age, "0 spring, 0.4 summer, 1 autumn")
+      ->capture_default_str();
   grow_app->add_flag("--list", grow.list, "List the species");
   grow_app->add_flag("--parameters", grow.parameters, "List the species' parameters");
   grow_app->add_flag("--json", grow.json, "Print JSON");

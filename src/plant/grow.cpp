@@ -5,11 +5,12 @@
 #include <utility>
 
 #include "plant/bark_texture.h"
-#include "plant/leaf_texture.h"
+#include "plant/leaf_shape.h"
 #include "plant/species.h"
 #include "plant/tree_mesh.h"
 #include "plant/weber_penn.h"
 #include "verdure/error.h"
+#include "verdure/leaf_plant.h"
 
 namespace verdure {
 namespace {
@@ -37,9 +38,9 @@ Plant grow(const GrowOptions& options) {
   const Species& species = findSpecies(options.species);
   TreeParameters parameters = species.parameters;
   for (const auto& [name, value] : options.set) setParameter(parameters, name, value);
-  if (options.texture_size < 16 || options.texture_size > 8192 || options.texture_size % 2 != 0)
+  if (options.texture_size < 32 || options.texture_size > 8192 || options.texture_size % 4 != 0)
     throw Error("texture_size", std::to_string(options.texture_size) + " is out of range",
-                "give an even number from 16 to 8192");
+                "give a multiple of 4 from 32 to 8192");
   const auto shape = static_cast<LeafShape>(static_cast<int>(parameters.leaf_shape));
 
   Plant plant;
@@ -64,19 +65,16 @@ Plant grow(const GrowOptions& options) {
   const float thin = species.twig_radius, any = std::numeric_limits<float>::max();
   addMesh(meshStems(skeleton, parameters, species.bark.width_m, thin, any), wood);
   if (!skeleton.leaves.empty()) {
-    Texture leaf{"leaf", makeLeafTexture(shape, species.leaf, parameters.leaf_scale_x,
-                                         options.texture_size, pattern)};
-    leaf.clamp_u = leaf.clamp_v = true;
-    plant.textures.push_back(std::move(leaf));
-    Material foliage;
-    foliage.name = "leaf";
-    foliage.base_color_texture = 2;
-    foliage.alpha_mode = AlphaMode::kMask;
+    const LeafAtlas atlas =
+        growLeafAtlas(leafSpeciesOf(shape), options.texture_size, options.leaf_age);
+    Mesh leaves =
+        meshLeaves(skeleton, atlas, species.blade, options.leaf_form, shape == LeafShape::kNeedles,
+                   static_cast<std::uint32_t>(plant.meshes.size()), plant);
+    leaves.material = addLeafMaterial(plant, atlas.set, atlas.light);
+    Material& foliage = plant.materials.back();
+    leaves.name = foliage.name = "leaf";
     foliage.alpha_cutoff = species.alpha_cutoff;
-    foliage.double_sided = true;
-    addMesh(meshLeaves(skeleton, shape, species.blade, options.leaf_form,
-                       static_cast<std::uint32_t>(plant.meshes.size()), plant),
-            foliage);
+    plant.meshes.push_back(std::move(leaves));
   }
   // Young wood of species with pale bark has another colour.
   Mesh twigs = meshStems(skeleton, parameters, species.bark.width_m, 0.0f, thin);

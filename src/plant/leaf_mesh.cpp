@@ -3,17 +3,32 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "plant/leaf_shape.h"
 #include "plant/tree_mesh.h"
 
 namespace verdure {
 namespace {
 
-/// A leaf's vertices in units of its length and width, and its triangles: the same for all leaves
-/// of a tree. x across, y along, both as on the texture; z above the blade, in lengths.
+/// The vertices of one variant of a leaf, and its triangles: the same for all its leaves.
 struct Pattern {
-  std::vector<glm::vec2> uv;     ///< x in [-0.5, 0.5], y in [0, 1] from the foot
-  std::vector<glm::vec3> place;  ///< x: widths, y and z: lengths; for needles see meshNeedles
+  std::vector<glm::vec2> uv;     ///< in the texture
+  std::vector<glm::vec3> place;  ///< from the stalk's foot in lengths: across, along, z above
   std::vector<std::uint32_t> indices;
+};
+
+/// Where the points of a leaf, from its foot in cell heights, are on the texture.
+struct Cell {
+  const LeafAtlas& atlas;
+  std::size_t variant;
+
+  glm::vec2 uv(const glm::vec2& p) const {
+    const auto k = static_cast<int>(variant);
+    const glm::vec2 corner(k % atlas.columns, k / atlas.columns);
+    const glm::vec2 within((atlas.variants[variant].foot + p.x) / atlas.cell_width, 1 - p.y);
+    return (corner + within) / glm::vec2(atlas.columns, atlas.rows);
+  }
+  float reachLeft() const { return atlas.variants[variant].foot; }
+  float reachRight() const { return atlas.cell_width - atlas.variants[variant].foot; }
 };
 
 /// Where the midrib, which turns downwards evenly by `curl` from foot to tip, is at y: (y, z) and
@@ -30,25 +45,29 @@ Arc onMidrib(float y, float curl) {
           {-std::sin(a), std::cos(a)}};
 }
 
-/// A blade: a hull around the outline, a fan of triangles about a point of the midrib. The two
-/// halves are folded up along the midrib, which is curved.
-Pattern bladePattern(LeafShape shape, const BladeForm& form, float leaf_scale_x) {
-  const std::vector<glm::vec2> right = leafHull(shape);
+/// A blade: a hull around the leaf, a fan of triangles about a point of its axis. The two halves
+/// are folded up along the axis, which is curved.
+Pattern bladePattern(const Cell& cell, const BladeForm& form, float stretch) {
+  const LeafHull hull =
+      leafHull(cell.atlas.variants[cell.variant].points, cell.reachLeft(), cell.reachRight());
   const float fold = form.fold_deg * 3.14159265f / 180;
   const float curl = form.curl_deg * 3.14159265f / 180;
   Pattern p;
-  const auto add = [&](float x, float y) {
-    const Arc arc = onMidrib(y, curl);
-    const float lift = std::abs(x) * std::sin(fold) * leaf_scale_x;
-    p.uv.emplace_back(x, y);
-    p.place.emplace_back(x * std::cos(fold), arc.point.x + lift * arc.normal.x,
-                         arc.point.y + lift * arc.normal.y);
+  const auto add = [&](const glm::vec2& v) {
+    const Arc arc = onMidrib(v.y, curl);
+    const float axis = hull.tip.x * v.y / hull.tip.y, side = v.x - axis;
+    const float lift = std::abs(side) * std::sin(fold) * stretch;
+    p.uv.push_back(cell.uv(v));
+    p.place.emplace_back((axis + side * std::cos(fold)) * stretch,
+                         arc.point.x + lift * arc.normal.x, arc.point.y + lift * arc.normal.y);
   };
-  add(0, 0.5f * (right.front().y + right.back().y));  // the fan's centre
-  add(0, 0);
-  for (const glm::vec2& v : right) add(v.x, v.y);
-  add(0, 1);
-  for (auto v = right.rbegin(); v != right.rend(); ++v) add(-v->x, v->y);
+  const float middle =
+      0.25f * (hull.right[0].y + hull.right[1].y + hull.left[0].y + hull.left[1].y);
+  add(hull.tip * (middle / hull.tip.y));  // the fan's centre
+  add({0, 0});
+  for (const glm::vec2& v : hull.right) add(v);
+  add(hull.tip);
+  for (auto v = hull.left.rbegin(); v != hull.left.rend(); ++v) add(*v);
   const auto rim = static_cast<std::uint32_t>(p.uv.size()) - 1;
   // Seen from +z with x to the right and y upwards, the rim runs counter-clockwise.
   for (std::uint32_t k = 0; k < rim; ++k)
@@ -56,30 +75,49 @@ Pattern bladePattern(LeafShape shape, const BladeForm& form, float leaf_scale_x)
   return p;
 }
 
+/// How far a leaf reaches to both sides of its foot, and up, in cell heights.
+struct Box {
+  float left = 0, right = 0, top = 0;
+  explicit Box(const Cell& cell) {
+    for (const glm::vec2& p : cell.atlas.variants[cell.variant].points) {
+      left = std::min(left, p.x);
+      right = std::max(right, p.x);
+      top = std::max(top, p.y);
+    }
+    left = std::max(left, -cell.reachLeft());
+    right = std::min(right, cell.reachRight());
+    top = std::min(top, 1.0f);
+  }
+};
+
 /// One quad.
-Pattern cardPattern() {
+Pattern cardPattern(const Cell& cell, float stretch) {
   Pattern p;
-  for (const glm::vec2 c : {glm::vec2(-0.5f, 0), {0.5f, 0}, {0.5f, 1}, {-0.5f, 1}}) {
-    p.uv.push_back(c);
-    p.place.emplace_back(c.x, c.y, 0.0f);
+  const Box box(cell);
+  for (const glm::vec2 c :
+       {glm::vec2(box.left, 0), {box.right, 0}, {box.right, box.top}, {box.left, box.top}}) {
+    p.uv.push_back(cell.uv(c));
+    p.place.emplace_back(c.x * stretch, c.y, 0.0f);
   }
   p.indices = {0, 1, 2, 0, 2, 3};
   return p;
 }
 
 /// A shoot with needles: three half planes, 120 degrees apart, that share the shoot as an edge.
-Pattern needlePattern() {
+Pattern needlePattern(const Cell& cell, float stretch) {
   Pattern p;
-  p.uv = {{0, 0}, {0, 1}};
-  p.place = {{0, 0, 0}, {0, 1, 0}};
+  const Box box(cell);
+  p.uv = {cell.uv({0, 0}), cell.uv({0, box.top})};
+  p.place = {{0, 0, 0}, {0, box.top, 0}};
   for (int k = 0; k < 3; ++k) {
     const float angle = 0.5236f + 2.0943951f * static_cast<float>(k);
     const float c = std::cos(angle), s = std::sin(angle);
-    const float side = k == 1 ? -0.5f : 0.5f;
+    const float side = k == 1 ? box.left : box.right;
+    const float wide = std::abs(side) * stretch;
     const auto first = static_cast<std::uint32_t>(p.uv.size());
-    for (const float y : {0.0f, 1.0f}) {
-      p.uv.emplace_back(side, y);
-      p.place.emplace_back(0.5f * c, y, 0.5f * s);  // z in widths here
+    for (const float y : {0.0f, box.top}) {
+      p.uv.push_back(cell.uv({side, y}));
+      p.place.emplace_back(wide * c, y, wide * s);
     }
     p.indices.insert(p.indices.end(), {0, first, first + 1, 0, first + 1, 1});
   }
@@ -88,17 +126,22 @@ Pattern needlePattern() {
 
 }  // namespace
 
-Mesh meshLeaves(const Skeleton& skeleton, LeafShape shape, const BladeForm& form,
-                LeafForm leaf_form, std::uint32_t mesh_index, Plant& plant) {
+Mesh meshLeaves(const Skeleton& skeleton, const LeafAtlas& atlas, const BladeForm& form,
+                LeafForm leaf_form, bool shoots, std::uint32_t mesh_index, Plant& plant) {
   const std::vector<LeafPlace>& places = skeleton.leaves;
   const bool card = leaf_form == LeafForm::kCard;
-  const bool needles = shape == LeafShape::kNeedles && !card;
-  const float leaf_scale_x = places.empty() ? 1.0f : places[0].width / places[0].length;
-  const Pattern pattern = card      ? cardPattern()
-                          : needles ? needlePattern()
-                                    : bladePattern(shape, form, leaf_scale_x);
-  const std::size_t vertices = pattern.uv.size();
-  const std::size_t corners = pattern.indices.size();
+  const bool needles = shoots && !card;
+  const float stretch =
+      places.empty() ? 1.0f : places[0].width / places[0].length / atlas.natural_width;
+  std::vector<Pattern> patterns;
+  for (std::size_t k = 0; k < kLeafVariants; ++k) {
+    const Cell cell{atlas, k};
+    patterns.push_back(card      ? cardPattern(cell, stretch)
+                       : needles ? needlePattern(cell, stretch)
+                                 : bladePattern(cell, form, stretch));
+  }
+  const std::size_t vertices = patterns[0].uv.size();
+  const std::size_t corners = patterns[0].indices.size();
   const std::size_t triangles = corners / 3;
 
   Mesh mesh;
@@ -116,20 +159,19 @@ Mesh meshLeaves(const Skeleton& skeleton, LeafShape shape, const BladeForm& form
   parallelFor(places.size(), 512, [&](std::size_t i) {
     const LeafPlace& place = places[i];
     const glm::mat3 frame(glm::mat3_cast(place.frame));
-    const std::uint32_t variant = place.noise & 3u;
+    const Pattern& pattern = patterns[place.noise % kLeafVariants];
     // Each leaf curls a little differently: 0.6 to 1.4 times the pattern's height.
     const float height =
         needles
-            ? place.width
+            ? place.length
             : place.length * (0.6f + 0.8f * static_cast<float>((place.noise >> 8) & 255u) / 255);
     const std::size_t v0 = i * vertices;
     for (std::size_t v = 0; v < vertices; ++v) {
       const glm::vec3& q = pattern.place[v];
       // Leaf axes: x across, y = upper side, z along; the pattern's z goes to y.
-      mesh.positions[v0 + v] = place.position + frame[0] * (-q.x * place.width) +
+      mesh.positions[v0 + v] = place.position + frame[0] * (-q.x * place.length) +
                                frame[1] * (q.z * height) + frame[2] * (q.y * place.length);
-      const glm::vec2 cell(static_cast<float>(variant & 1u), static_cast<float>(variant >> 1));
-      mesh.uvs[v0 + v] = 0.5f * (cell + glm::vec2(pattern.uv[v].x + 0.5f, 1 - pattern.uv[v].y));
+      mesh.uvs[v0 + v] = pattern.uv[v];
     }
     Leaf leaf;
     leaf.mesh = mesh_index;

@@ -1,39 +1,40 @@
 #ifndef VERDURE_PLANT_LEAF_SHAPE_H_
 #define VERDURE_PLANT_LEAF_SHAPE_H_
 
+#include <array>
 #include <glm/glm.hpp>
-#include <vector>
+#include <span>
+#include <string>
 
 namespace verdure {
 
-/// Outlines of leaves (the parameter LeafShape).
+/// Leaves of grown plants (the parameter LeafShape): each is a species of growLeaf().
 enum class LeafShape {
   kElliptic,    ///< tupelo
-  kRound,       ///< aspen: nearly a circle, blunt teeth, a short tip
+  kRound,       ///< aspen
   kLanceolate,  ///< willow
-  kLobed,       ///< black oak: seven pointed lobes
-  kPalmate,     ///< Japanese maple: seven fingers
-  kTriangular,  ///< birch: broad base, double teeth, long tip
-  kSmallOval,   ///< box, privet
+  kLobed,       ///< black oak
+  kPalmate,     ///< Japanese maple
+  kTriangular,  ///< birch
+  kSmallOval,   ///< privet
   kNeedles      ///< pine: a shoot with its needles
 };
 inline constexpr int kLeafShapeCount = 8;
 
-/// Where the stalk ends and the blade begins, fraction of the leaf's length.
-inline constexpr float kLeafStalk = 0.1f;
+/// LeafGrowOptions::species of a shape.
+std::string leafSpeciesOf(LeafShape shape);
 
-/// Outline of a leaf as a closed polygon: x in [-0.5, 0.5] across, y in [0, 1] from the foot of the
-/// stalk to the tip. Needles have none (empty).
-std::vector<glm::vec2> leafOutline(LeafShape shape);
+/// The polygon that carries a leaf as geometry. Its axis runs from the foot, (0, 0), to the tip;
+/// on each side are two corners, from the foot on. It contains the leaf but for the ends of its
+/// stalk and of its tip.
+struct LeafHull {
+  glm::vec2 tip{0, 1};
+  std::array<glm::vec2, 2> right, left;
+};
 
-/// Axes of the fingers of a palmate leaf: tips, seen from palmCenter().
-std::vector<glm::vec2> palmTips();
-glm::vec2 palmCenter();
-
-/// The polygon that carries the outline as geometry: right-hand side of a hull that is symmetric
-/// about the midrib, foot (0, 0) and tip (0, 1) left out, from foot to tip. It contains the
-/// outline.
-std::vector<glm::vec2> leafHull(LeafShape shape);
+/// The smallest such polygon around points (x across, y upwards from the foot; whatever unit) whose
+/// corners lie in [-reach_left, reach_right] across.
+LeafHull leafHull(std::span<const glm::vec2> points, float reach_left, float reach_right);
 
 }  // namespace verdure
 

@@ -12,8 +12,9 @@ const char* const kOwn = "verdure, by the parameters of Weber and Penn 1995";
 // Tables by the paper's names. The paper's four species start from its published table, whole, and
 // a second table gives what this library changes. The reasons are the same for all: the published
 // leaf counts and sizes were chosen for flat leaves seen from afar (the willow alone has over a
-// million), LeafShape numbers other outlines here, the heights vary too much to be of use (the
-// oak's from 0 to 20 m), and stems need more segments to look smooth from near.
+// million), LeafShape numbers other leaves here, which LeafScaleX should not stretch, the heights
+// vary too much to be of use (the oak's from 0 to 20 m), and stems need more segments to look
+// smooth from near. Leaves are larger than life, up to twice, so that fewer fill the crown.
 
 Species quakingAspen() {
   Species s;
@@ -36,14 +37,13 @@ Species quakingAspen() {
   // More and smaller leaves; the crown begins where the paper's picture shows it.
   setParameters(s.parameters,
                 "BaseSize=0.3 ScaleV=1.5 0CurveRes=10 1CurveRes=7 2CurveRes=4 "
-                "Leaves=42 LeafByLength=1 LeafShape=1 LeafScale=0.115 LeafScaleX=0.9");
+                "Leaves=42 LeafByLength=1 LeafShape=1 LeafScale=0.185 LeafScaleX=0.57");
   s.bark = {BarkKind::kLenticels,
             {0.80f, 0.79f, 0.70f},
             {0.17f, 0.15f, 0.13f},
             {0.73f, 0.71f, 0.61f},
             0.8f,
             0.9f};
-  s.leaf = {{0.37f, 0.50f, 0.20f}, {0.50f, 0.58f, 0.22f}, {0.62f, 0.68f, 0.38f}};
   s.blade = {14, 25};
   s.twig_radius = 0.012f;
   s.twig_tint = {0.30f, 0.22f, 0.15f};
@@ -71,14 +71,13 @@ Species blackTupelo() {
   // A middle-aged tree, whose crown the leaves can fill.
   setParameters(s.parameters,
                 "Scale=18 ScaleV=2 2Branches=18 2CurveRes=6 3Branches=10 "
-                "Leaves=9 LeafByLength=1 LeafScale=0.19");
+                "Leaves=9 LeafByLength=1 LeafScale=0.22 LeafScaleX=0.41");
   s.bark = {BarkKind::kBlocks,
             {0.46f, 0.41f, 0.36f},
             {0.15f, 0.13f, 0.11f},
             {0.56f, 0.53f, 0.47f},
             2.0f,
             0.5f};
-  s.leaf = {{0.21f, 0.36f, 0.13f}, {0.33f, 0.45f, 0.15f}, {0.50f, 0.58f, 0.30f}};
   s.blade = {18, 40};
   return s;
 }
@@ -109,7 +108,7 @@ Species weepingWillow() {
                 "0SegSplits=0 0SplitAngle=22 1Branches=12 1SegSplits=0.05 1CurveRes=12 "
                 "2Branches=9 2Length=0.75 2SegSplits=0.05 2CurveRes=8 2CurveV=60 "
                 "3DownAngle=40 3Branches=6 3Length=0.7 3LengthV=0.25 3CurveRes=4 3CurveV=40 "
-                "Leaves=21 LeafByLength=1 LeafShape=2 LeafScale=0.19 LeafScaleX=0.24 LeafBend=0.1 "
+                "Leaves=21 LeafByLength=1 LeafShape=2 LeafScale=0.245 LeafScaleX=0.16 LeafBend=0.1 "
                 "AttractionUp=-2");
   s.bark = {BarkKind::kFurrows,
             {0.47f, 0.42f, 0.34f},
@@ -117,7 +116,6 @@ Species weepingWillow() {
             {0.52f, 0.52f, 0.42f},
             2.2f,
             0.7f};
-  s.leaf = {{0.42f, 0.53f, 0.24f}, {0.55f, 0.61f, 0.28f}, {0.66f, 0.70f, 0.44f}};
   s.blade = {16, 35};
   s.twig_radius = 0.008f;
   s.twig_tint = {0.95f, 1.0f, 0.45f};
@@ -146,18 +144,18 @@ Species blackOak() {
       "PruneRatio=0 PruneWidth=0.5 PruneWidthPeak=0.5 PrunePowerLow=0.5 PrunePowerHigh=0.5");
   // Splits double all that grows above them: here the base splits alone, with shorter boughs that
   // do not sweep the ground.
-  setParameters(s.parameters,
-                "BaseSize=0.2 Scale=11 ScaleV=1.5 0SegSplits=0 0SplitAngle=20 "
-                "1Branches=15 1Length=0.55 1SegSplits=0.1 1Curve=28 1CurveBack=-60 1CurveV=90 "
-                "2Branches=44 2Length=0.28 2CurveRes=4 2CurveV=60 "
-                "Leaves=21 LeafByLength=1 LeafShape=3 LeafScale=0.17 AttractionUp=0.6");
+  setParameters(
+      s.parameters,
+      "BaseSize=0.2 Scale=11 ScaleV=1.5 0SegSplits=0 0SplitAngle=20 "
+      "1Branches=15 1Length=0.55 1SegSplits=0.1 1Curve=28 1CurveBack=-60 1CurveV=90 "
+      "2Branches=44 2Length=0.28 2CurveRes=4 2CurveV=60 "
+      "Leaves=21 LeafByLength=1 LeafShape=3 LeafScale=0.187 LeafScaleX=0.7 AttractionUp=0.6");
   s.bark = {BarkKind::kFurrows,
             {0.40f, 0.36f, 0.32f},
             {0.11f, 0.09f, 0.08f},
             {0.47f, 0.48f, 0.42f},
             2.6f,
             0.6f};
-  s.leaf = {{0.25f, 0.38f, 0.14f}, {0.37f, 0.46f, 0.17f}, {0.53f, 0.58f, 0.32f}};
   s.blade = {12, 30};
   return s;
 }
@@ -177,7 +175,7 @@ Species japaneseMaple() {
                 "2LengthV=0.08 2Taper=1 2CurveRes=6 2Curve=-10 2CurveV=90 "
                 "3DownAngle=48 3DownAngleV=12 3Rotate=-150 3RotateV=25 3Branches=6 3Length=0.4 "
                 "3LengthV=0.05 3Taper=1 3CurveRes=3 3CurveV=60 "
-                "Leaves=18 LeafByLength=1 LeafShape=4 LeafScale=0.09 LeafScaleX=1.05 LeafBend=0.75 "
+                "Leaves=18 LeafByLength=1 LeafShape=4 LeafScale=0.11 LeafScaleX=1 LeafBend=0.75 "
                 "AttractionUp=-0.15 PruneRatio=1 PruneWidth=0.52 PruneWidthPeak=0.35 "
                 "PrunePowerLow=0.3 PrunePowerHigh=0.6");
   s.bark = {BarkKind::kSmooth,
@@ -186,7 +184,6 @@ Species japaneseMaple() {
             {0.50f, 0.50f, 0.43f},
             0.9f,
             0.35f};
-  s.leaf = {{0.45f, 0.10f, 0.10f}, {0.60f, 0.19f, 0.11f}, {0.62f, 0.26f, 0.18f}};
   s.blade = {8, 40};
   s.twig_radius = 0.006f;
   s.twig_tint = {0.9f, 0.35f, 0.3f};
@@ -208,7 +205,7 @@ Species scotsPine() {
                 "2LengthV=0.08 2Taper=1 2CurveRes=5 2Curve=-30 2CurveV=90 "
                 "3DownAngle=42 3DownAngleV=12 3Rotate=140 3RotateV=20 3Branches=6 3Length=0.42 "
                 "3LengthV=0.08 3Taper=1 3CurveRes=3 3Curve=-30 3CurveV=40 "
-                "Leaves=9 LeafByLength=0.7 LeafShape=7 LeafScale=0.17 LeafScaleX=0.72 LeafBend=0 "
+                "Leaves=9 LeafByLength=0.7 LeafShape=7 LeafScale=0.17 LeafScaleX=0.67 LeafBend=0 "
                 "AttractionUp=0.9");
   s.bark = {BarkKind::kPlates,
             {0.60f, 0.37f, 0.23f},
@@ -216,7 +213,6 @@ Species scotsPine() {
             {0.66f, 0.49f, 0.36f},
             1.8f,
             0.7f};
-  s.leaf = {{0.27f, 0.41f, 0.24f}, {0.38f, 0.48f, 0.24f}, {0.42f, 0.30f, 0.18f}};
   s.alpha_cutoff = 0.4f;
   return s;
 }
@@ -235,7 +231,7 @@ Species silverBirch() {
       "2LengthV=0.1 2Taper=1 2CurveRes=7 2Curve=20 2CurveV=60 "
       "3DownAngle=58 3DownAngleV=18 3Rotate=140 3RotateV=20 3Branches=8 3Length=0.5 "
       "3LengthV=0.08 3Taper=1 3CurveRes=4 3CurveV=70 "
-      "Leaves=17 LeafByLength=0.7 LeafShape=5 LeafScale=0.105 LeafScaleX=0.8 LeafBend=0.45 "
+      "Leaves=17 LeafByLength=0.7 LeafShape=5 LeafScale=0.143 LeafScaleX=0.59 LeafBend=0.45 "
       "AttractionUp=-0.6");
   s.bark = {BarkKind::kPaper,
             {0.90f, 0.89f, 0.86f},
@@ -243,7 +239,6 @@ Species silverBirch() {
             {0.78f, 0.73f, 0.66f},
             0.8f,
             0.8f};
-  s.leaf = {{0.34f, 0.48f, 0.18f}, {0.47f, 0.56f, 0.22f}, {0.60f, 0.66f, 0.38f}};
   s.blade = {16, 35};
   s.twig_radius = 0.014f;
   s.twig_tint = {0.16f, 0.085f, 0.06f};
@@ -264,7 +259,7 @@ Species hedge() {
                 "2LengthV=0.1 2Taper=1 2CurveRes=4 2Curve=-20 2CurveV=60 "
                 "3DownAngle=50 3DownAngleV=10 3Rotate=140 3RotateV=20 3Branches=5 3Length=0.45 "
                 "3LengthV=0.05 3Taper=1 3CurveRes=2 3CurveV=30 "
-                "Leaves=15 LeafShape=6 LeafScale=0.045 LeafScaleX=0.5 LeafBend=0.3 "
+                "Leaves=15 LeafShape=6 LeafScale=0.05 LeafScaleX=0.45 LeafBend=0.3 "
                 "AttractionUp=0.8 "
                 "PruneRatio=1 PruneWidth=0.48 PruneWidthPeak=0.5 PrunePowerLow=0.12 "
                 "PrunePowerHigh=0.22");
@@ -274,7 +269,6 @@ Species hedge() {
             {0.47f, 0.45f, 0.38f},
             0.9f,
             0.12f};
-  s.leaf = {{0.22f, 0.38f, 0.12f}, {0.34f, 0.47f, 0.15f}, {0.50f, 0.60f, 0.30f}};
   s.blade = {22, 20};
   return s;
 }

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "plant/bark_texture.h"
-#include "plant/leaf_texture.h"
 #include "plant/tree_mesh.h"
 #include "plant/tree_parameters.h"
 
@@ -15,7 +14,6 @@ struct Species {
   SpeciesInfo info;
   TreeParameters parameters;
   BarkLook bark;
-  LeafLook leaf;
   BladeForm blade;
   float alpha_cutoff = 0.5f;
   float twig_radius = 0;      ///< m: thinner stems are young wood; 0 = none

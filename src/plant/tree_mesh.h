@@ -1,7 +1,7 @@
 #ifndef VERDURE_PLANT_TREE_MESH_H_
 #define VERDURE_PLANT_TREE_MESH_H_
 
-#include "plant/leaf_shape.h"
+#include "leaf/leaf_atlas.h"
 #include "plant/weber_penn.h"
 #include "verdure/grow.h"
 #include "verdure/plant.h"
@@ -20,10 +20,10 @@ struct BladeForm {
   float curl_deg = 30;  ///< turn of the midrib from foot to tip, downwards
 };
 
-/// Leaves as one mesh, with Plant::leaves and leaf_triangles (mesh number `mesh_index`). The
-/// texture holds 2 x 2 variants of the leaf (see leaf_texture.h).
-Mesh meshLeaves(const Skeleton& skeleton, LeafShape shape, const BladeForm& form,
-                LeafForm leaf_form, std::uint32_t mesh_index, Plant& plant);
+/// Leaves as one mesh, with Plant::leaves and leaf_triangles (mesh number `mesh_index`). `shoots`:
+/// they are shoots with needles, not blades.
+Mesh meshLeaves(const Skeleton& skeleton, const LeafAtlas& atlas, const BladeForm& form,
+                LeafForm leaf_form, bool shoots, std::uint32_t mesh_index, Plant& plant);
 
 }  // namespace verdure
 

@@ -41,7 +41,9 @@ void LeafFields(benchmark::State& state) {
   const LeafSpecies& species = speciesOf(state);
   if (species.form) {
     const GrownLeaf leaf = growForm(species, 1);
-    for (auto _ : state) benchmark::DoNotOptimize(rasterise(leaf, species, kSize).coverage.data());
+    for (auto _ : state)
+      benchmark::DoNotOptimize(
+          rasterise(leaf, species, {kSize, frameExtent(leaf.form.outline)}).coverage.data());
   } else {
     state.SkipWithError("needles have no venation");
   }

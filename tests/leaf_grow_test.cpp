@@ -364,7 +364,7 @@ TEST(LeafMaps, VeinsAreDarkAgainstTheLight) {
   for (const LeafSpecies* species : blades()) {
     const GrownLeaf leaf = growForm(*species, 1);
     const LeafSet set = leafOf(species->info.name, 512);
-    const BladeFields fields = rasterise(leaf, *species, 512);
+    const BladeFields fields = rasterise(leaf, *species, {512, frameExtent(leaf.form.outline)});
     double on = 0, off = 0, on_count = 0, off_count = 0;
     for (std::size_t i = 0; i < set.texelCount(); ++i) {
       if (set.opacity[i] < 1 || fields.stalk[i] > 0) continue;

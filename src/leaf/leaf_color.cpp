@@ -77,9 +77,10 @@ void paintLeaf(const BladeFields& fields, const Blemishes& blemishes, const Leaf
       pigments.tannin += 0.5f * rim * blade;
 
       const glm::vec3 depth = absorbance(pigments);
-      glm::vec3 front = reflected(depth, 1.0f, 0.018f);
-      glm::vec3 back = reflected(depth, species.back_path, 0.022f) + species.back_bloom;
-      back = glm::mix(back, glm::vec3(glm::dot(back, glm::vec3(0.3f, 0.6f, 0.1f))), 0.14f);
+      // What the front's smooth surface throws back is its gloss, not its albedo.
+      glm::vec3 front = reflected(depth, 1.0f, 0.008f);
+      glm::vec3 back = reflected(depth, species.back_path, 0.018f) + species.back_bloom;
+      back = glm::mix(back, glm::vec3(glm::dot(back, glm::vec3(0.3f, 0.6f, 0.1f))), 0.08f);
       // At the back veins stand out pale.
       back *= 1 + 0.18f * vein * blade;
       // Against the light veins are thick and dark, down to the finest.

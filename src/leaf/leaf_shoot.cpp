@@ -136,7 +136,7 @@ Paint paintRod(const Rod& rod, const Place& place, const LeafSpecies& species, f
     pigments.chlorophyll *= 1 + 0.8f * noise;
   }
   const glm::vec3 depth = absorbance(pigments);
-  Paint paint{reflected(depth, 1.0f, 0.02f),
+  Paint paint{reflected(depth, 1.0f, 0.01f),
               reflected(depth, species.back_path, 0.02f) + species.back_bloom,
               transmitted(depth, 1.15f)};
   const float wax = rod.part == Rod::Part::kNeedle ? 1 - sheath : 0.0f;

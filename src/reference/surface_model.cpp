@@ -9,7 +9,6 @@
 #include "scene/scene.h"
 #include "shared/gloss.h"
 #include "shared/ground.h"
-#include "shared/leaf.h"
 #include "shared/normal_map.h"
 
 namespace verdure {
@@ -176,7 +175,7 @@ SurfaceModel::Point SurfaceModel::at(const RayHit& hit, const Ray& ray) const {
   scatterer.out = -glm::normalize(ray.direction);
   if (const std::optional<Gloss>& gloss = surface.foliage ? leaf_gloss_ : wood_gloss_)
     scatterer.gloss = &*gloss;
-  if (surface.foliage) scatterer.transmittance = shared::leafTransmittance(scatterer.reflectance);
+  scatterer.transmittance = surface.transmittance;
   return point;
 }
 

@@ -6,8 +6,8 @@
 
 #include "base/random.h"
 #include "rays/ray_scene.h"
-#include "rays/texel_grid.h"
 #include "reference/gloss.h"
+#include "scene/texel_grid.h"
 
 namespace verdure {
 

@@ -79,7 +79,7 @@ class PathTracer {
       : scene_(scene),
         options_(options),
         rays_(scene),
-        surfaces_(scene, rays_, options.normal_maps, options.gloss),
+        surfaces_(scene, rays_, {options.normal_maps, options.gloss, options.leaf_maps}),
         sky_(skyOf(lights)),
         sky_sampler_(sky_),
         sun_(lights.sun),

@@ -131,7 +131,7 @@ void main() {
     k_t = textureGrad(leaf_colors, vec3(covered_uv, layer), uv_x, uv_y).rgb;
     even = leafEvenDirection(h).z;
     vec3 q = kLeafModel == kLeafMaps ? leafDirection(h) : vec3(0.0, 0.0, even);
-    through = side * vec3(q.x, q.y, -q.z);
+    through = leafThrough(side, q);
   }
 
   // The light on the side that is seen, and on the other.

@@ -3,11 +3,14 @@
 
 #include "base/random.h"
 #include "even_leaf.h"
+#include "leaf/leaf_transport.h"
+#include "leaf_sets.h"
 #include "reference/surface_model.h"
 #include "render_fixture.h"
 #include "shared/leaf.h"
 #include "shared/leaf_basis.h"
 #include "verdure/leaf_grow.h"
+#include "verdure/leaf_reference.h"
 #include "verdure/reference.h"
 
 namespace verdure::test {
@@ -282,6 +285,97 @@ TEST(LeafReference, FindsTheSamePictureHoweverItLooksForLight) {
     const double error = std::hypot(errorOfMean(pictures[0]), errorOfMean(other));
     EXPECT_NEAR(luminance(meanOf(other.image)), luminance(meanOf(pictures[0].image)), 4.0 * error);
     EXPECT_LT(error, 0.02 * luminance(meanOf(other.image)));
+  }
+}
+
+/// Looks squarely at the front of a leaf of that many texels, a pixel for each.
+ReferenceOptions onTexels(const LeafSet& set, int samples) {
+  ReferenceOptions options;
+  options.width = set.width;
+  options.height = set.height;
+  const float half = 5e-4f * set.mm_per_texel * static_cast<float>(set.height);
+  options.camera = {{0, half, 1}, {0, half, 0}, 2.0f * std::atan(half)};
+  options.samples = samples;
+  options.bounces = 1;
+  return options;
+}
+
+/// Light from behind: `w` in the frame of the back, z out of it.
+Daylight fromBehind(const glm::vec3& w) {
+  Daylight light;
+  light.sun.direction = glm::vec3(w.x, w.y, -w.z);
+  light.sun.luminance = glm::vec3(1.0f) / std::pow(std::sin(light.sun.angular_radius), 2.0f);
+  return light;
+}
+
+TEST(LeafBssrdf, AFlatLeafLetsThroughWhatTheClosedFormSays) {
+  for (const float thickness : {0.13f, 0.2f, 0.5f}) {
+    // The middle is farther from the outline than light gets.
+    LeafSet set = flatLeaf(16, 16, 0.6f, thickness, 0.1f);
+    const Multipole multipole(set.optics, insideReflection(1.33));
+    const double total = 0.9 * 0.3 * multipole.total(double{thickness});
+    ReferenceOptions options = onTexels(set, 4096);
+    options.width = options.height = 8;
+    options.camera.vertical_fov *= 0.1f;
+    const auto expect = [&](const Daylight& light, double expected) {
+      const ReferencePicture picture = renderLeafReference(set, {}, {}, light, options);
+      const double found = luminance(meanOf(picture.image));
+      EXPECT_NEAR(found / expected, 1.0, 0.01) << thickness;
+      EXPECT_LT(errorOfMean(picture), 0.003 * expected);
+    };
+    const glm::vec3 slanting = glm::normalize(glm::vec3(0.6f, 0.5f, 0.7f));
+    expect(fromBehind(slanting), double{slanting.z} * total);
+    Daylight sky;
+    sky.sky = uniformSky(glm::vec3(1.0f), glm::vec3(1.0f));
+    expect(sky, total + 0.1);  // and what the front reflects
+    // Optics of one's own.
+    LeafBakeOptions bake;
+    bake.surface_reflection = 0.1f;
+    const ReferencePicture other =
+        renderLeafReference(set, {}, bake, fromBehind(slanting), options);
+    EXPECT_NEAR(luminance(meanOf(other.image)) /
+                    (double{slanting.z} * 0.27 *
+                     Multipole(set.optics, double{0.1f}).total(double{thickness})),
+                1.0, 0.01);
+  }
+}
+
+TEST(LeafBssrdf, IsTheSumOverTexelsOfTheBake) {
+  const LeafSet set = roughLeaf(96, 96, 0.1f);
+  LeafTransport transport(set, {});
+  transport.makeDirectKernel();
+  for (const float elevation : {1.5f, 0.7f, 0.39f}) {
+    const glm::vec3 w(std::cos(elevation) * 0.6f, std::cos(elevation) * 0.8f, std::sin(elevation));
+    const Plane sum = transport.throughDirectly(
+        transport.enteringLight(1, {w}, {glm::vec3(1, 0, 0)})[0], 0, set.height);
+    const ReferencePicture picture =
+        renderLeafReference(set, {}, {}, fromBehind(w), onTexels(set, 256));
+    // By blocks, because single pixels are noisy.
+    constexpr int kBlock = 8;
+    double squares = 0.0, errors = 0.0, of_sum = 0.0, of_picture = 0.0;
+    int blocks = 0;
+    for (int y = 0; y < set.height; y += kBlock)
+      for (int x = 0; x < set.width; x += kBlock) {
+        double a = 0.0, b = 0.0;
+        bool inside = true;
+        for (int v = y; v < y + kBlock; ++v)
+          for (int u = x; u < x + kBlock; ++u) {
+            inside = inside && set.opacity[static_cast<std::size_t>(v * set.width + u)] > 0.5f;
+            a += 0.3 * double{sum[static_cast<std::size_t>(v) * transport.stride() +
+                                  static_cast<std::size_t>(u)]};
+            b += double{picture.image.at(u, v).y};
+          }
+        if (!inside) continue;
+        of_sum += a;
+        of_picture += b;
+        squares += a * a;
+        errors += (a - b) * (a - b);
+        ++blocks;
+      }
+    ASSERT_GT(blocks, 50);
+    RecordProperty("error", std::to_string(std::sqrt(errors / squares)));
+    EXPECT_NEAR(of_picture / of_sum, 1.0, 0.01) << elevation;
+    EXPECT_LT(std::sqrt(errors / squares), 0.03) << elevation;
   }
 }
 

@@ -132,7 +132,7 @@ void main() {
     k_t = lightColor(layer, covered_uv, uv_x, uv_y);
     even = leafEvenDirection(h).z;
     vec3 q = kLeafModel == kLeafMaps ? leafDirection(h) : vec3(0.0, 0.0, even);
-    through = side * vec3(q.x, q.y, -q.z);
+    through = leafThrough(side, q);
   }
 
   // The light on the side that is seen, and on the other.

@@ -1,13 +1,14 @@
-#ifndef VERDURE_TESTS_LEAF_SHEET_H_
-#define VERDURE_TESTS_LEAF_SHEET_H_
+#ifndef VERDURE_TESTS_EVEN_LEAF_H_
+#define VERDURE_TESTS_EVEN_LEAF_H_
 
+#include <glm/glm.hpp>
 #include <tuple>
 #include <type_traits>
+#include <vector>
 
 #include "shared/color.h"
 #include "verdure/leaf_plant.h"
 
-/// Flat leaves with maps of both sides that are the same everywhere.
 namespace verdure::test {
 
 /// A leaf 2 m wide that is the same everywhere.
@@ -53,9 +54,6 @@ inline Plant evenLeaf(const glm::vec3& front_h, const glm::vec3& back_h) {
   return plant;
 }
 
-/// Drivers decode bytes of sRGB to within 0.7 %.
-inline constexpr float kOfBytes = 1e-2f;
-
 /// What a texture holds, linear.
 inline glm::vec3 held(const Plant& plant, int texture, bool srgb) {
   const Image& image = plant.textures[static_cast<std::size_t>(texture)].image;
@@ -69,4 +67,4 @@ inline glm::vec3 held(const Plant& plant, int texture, bool srgb) {
 
 }  // namespace verdure::test
 
-#endif  // VERDURE_TESTS_LEAF_SHEET_H_
+#endif  // VERDURE_TESTS_EVEN_LEAF_H_

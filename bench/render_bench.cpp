@@ -3,7 +3,8 @@
 // render_bench [leaves = 10000] [frames = 31] [width = 1280] [height = 720] [A = standard]
 //   [B = expressive]
 // A and B are presets; PRESET:paper, PRESET:layers, PRESET:ordered and PRESET:shadow-map are one
-// with that source of shadows.
+// with that source of shadows; PRESET:maps, PRESET:even, PRESET:color and PRESET:no-light-through
+// one with that model of leaves, which then wear the maps of a grown leaf.
 
 #include <algorithm>
 #include <cstdio>
@@ -13,6 +14,8 @@
 
 #include "test_plants.h"
 #include "verdure/error.h"
+#include "verdure/leaf_grow.h"
+#include "verdure/leaf_plant.h"
 #include "verdure/render.h"
 
 namespace {
@@ -41,10 +44,36 @@ verdure::Terms termsOf(const std::string& name) {
     terms.shadow_source = ShadowSource::kDepthOrdered;
   else if (source == "shadow-map")
     terms.shadow_source = ShadowSource::kShadowMap;
+  else if (source == "maps")
+    terms.leaf = verdure::LeafModel::kMaps;
+  else if (source == "even")
+    terms.leaf = verdure::LeafModel::kDiffuse;
+  else if (source == "color")
+    terms.leaf = verdure::LeafModel::kColor;
+  else if (source == "no-light-through")
+    terms.transmission = false;
   else
-    throw verdure::Error("render_bench", "no shadows come from \"" + source + "\"",
-                         "use paper, layers, ordered or shadow-map");
+    throw verdure::Error("render_bench", "unknown: \"" + source + "\"",
+                         "use paper, layers, ordered or shadow-map, or maps, even, color or "
+                         "no-light-through");
   return terms;
+}
+
+bool wantsLeafMaps(const std::string& name) {
+  for (const char* model : {":maps", ":even", ":color", ":no-light-through"})
+    if (name.ends_with(model)) return true;
+  return false;
+}
+
+/// Four textures of 512 x 512 a side instead of the painted leaf.
+void putOnLeafMaps(verdure::Plant& tree) {
+  verdure::LeafGrowOptions grow;
+  grow.size = 512;
+  const verdure::LeafSet leaf = verdure::growLeaf(grow);
+  const std::uint32_t material =
+      verdure::addLeafMaterial(tree, leaf, verdure::bakeLeafTranslucency(leaf));
+  for (verdure::Mesh& mesh : tree.meshes)
+    if (mesh.kind == verdure::PartKind::kFoliage) mesh.material = material;
 }
 
 int run(int argc, char** argv) {
@@ -54,7 +83,9 @@ int run(int argc, char** argv) {
   view.width = argument(argc, argv, 3, 1280);
   view.height = argument(argc, argv, 4, 720);
 
-  const Plant tree = test::ballTree(leaves, 0.12f, true);
+  const std::string names[] = {argc > 5 ? argv[5] : "standard", argc > 6 ? argv[6] : "expressive"};
+  Plant tree = test::ballTree(leaves, 0.12f, true);
+  if (wantsLeafMaps(names[0]) || wantsLeafMaps(names[1])) putOnLeafMaps(tree);
   const CrownLight light = test::ballTreeLight(tree);
   Scene scene;
   scene.items.push_back({&tree, &light});
@@ -63,7 +94,6 @@ int run(int argc, char** argv) {
   Renderer renderer;
   renderer.setScene(scene);
 
-  const std::string names[] = {argc > 5 ? argv[5] : "standard", argc > 6 ? argv[6] : "expressive"};
   const Terms terms[] = {termsOf(names[0]), termsOf(names[1])};
   std::vector<double> shadow[2], color[2], tone[2], whole[2];
   double pack_ms = 0.0;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <ostream>
 #include <set>
 
 #include "base/parallel.h"
@@ -15,6 +16,12 @@
 #include "verdure/grow.h"
 
 namespace verdure {
+
+/// How failures name a species.
+static void PrintTo(const LeafSpecies* species, std::ostream* out) {
+  *out << species->info.name;
+}
+
 namespace {
 
 LeafSet leafOf(const std::string& species, int size, float age = 0.4f, std::uint32_t seed = 1) {

@@ -1,5 +1,6 @@
 // Leaves with maps of both sides, through glTF files.
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -113,6 +114,112 @@ TEST(LeafMaterial, DamagedExtrasSayWhatIsWrong) {
           "'scale' is not a number");
   refused([](Json& leaf) { leaf["frontRoughness"] = 7; }, "frontRoughness is out of range");
   refused([](Json& leaf) { leaf["backColorTexture"]["index"] = 99; }, "99");
+}
+
+/// A foreign file: a box whose material has KHR_materials_diffuse_transmission and images of 2 x 2.
+struct TranslucentFile : BoxFile {
+  TranslucentFile() {
+    json["extensionsUsed"] = {"KHR_materials_diffuse_transmission"};
+    json["materials"] = Json::array({{{"name", "leaf"}, {"doubleSided", true}}});
+    primitive()["material"] = 0;
+    through() = {{"diffuseTransmissionFactor", 0.625},
+                 {"diffuseTransmissionColorFactor", {0.5, 0.75, 0.25}},
+                 {"diffuseTransmissionTexture", {{"index", addImage({0, 0, 0, 128})}}},
+                 {"diffuseTransmissionColorTexture", {{"index", addImage({200, 220, 90, 255})}}}};
+  }
+  Json& through() {
+    return json["materials"][0]["extensions"]["KHR_materials_diffuse_transmission"];
+  }
+  std::size_t addImage(const std::array<std::uint8_t, 4>& texel) {
+    Image image(2, 2);
+    for (int i = 0; i < 4; ++i) std::copy(texel.begin(), texel.end(), image.at(i % 2, i / 2));
+    json["images"].push_back({{"bufferView", view(encodePng(image))}, {"mimeType", "image/png"}});
+    json["textures"].push_back({{"source", json["images"].size() - 1}});
+    return json["textures"].size() - 1;
+  }
+  fs::path write(const char* folder) const {
+    const fs::path path = scratchFolder(folder) / "leaf.glb";
+    writeFile(path, glb());
+    return path;
+  }
+};
+
+void expectTheSameLight(const Plant& plant) {
+  ASSERT_TRUE(plant.materials[0].transmission.has_value());
+  EXPECT_FALSE(plant.materials[0].leaf.has_value());
+  const DiffuseTransmission& stated = *plant.materials[0].transmission;
+  EXPECT_EQ(stated.factor, 0.625f);
+  EXPECT_EQ(stated.color, glm::vec3(0.5f, 0.75f, 0.25f));
+  const auto texel = [&plant](int texture) {
+    return plant.textures.at(static_cast<std::size_t>(texture)).image.at(1, 1);
+  };
+  EXPECT_EQ(texel(stated.factor_texture)[3], 128);
+  EXPECT_EQ(texel(stated.color_texture)[1], 220);
+}
+
+TEST(StatedTransmission, IsReadAndWrittenWithoutLoss) {
+  const TranslucentFile file;
+  Plant plant = loadPlant(file.write("stated"));
+  expectTheSameLight(plant);
+  // As a change to its own file,
+  const fs::path again = scratchFolder("stated_again") / "leaf.glb";
+  savePlant(plant, nullptr, again);
+  EXPECT_EQ(glbJson(again)["materials"], file.json["materials"]);
+  expectTheSameLight(loadPlant(again));
+  // and as a new one.
+  plant.source = nullptr;
+  savePlant(plant, nullptr, again);
+  expectTheSameLight(loadPlant(again));
+  const Json used = glbJson(again)["extensionsUsed"];
+  EXPECT_EQ(used, Json::array({"KHR_materials_diffuse_transmission"}));
+  EXPECT_NE(runValidator({again.string()}), 1);
+}
+
+TEST(StatedTransmission, MapsOfBothSidesGoBeforeIt) {
+  const fs::path path = scratchFolder("stated_own") / "leaf.gltf";
+  savePlant(birchLeaf(), nullptr, path);
+  EXPECT_FALSE(loadPlant(path).materials[0].transmission.has_value());
+  // Without them it is what is known.
+  changeJson(path, [](Json& json) { json["materials"][0].erase("extras"); });
+  const Plant foreign = loadPlant(path);
+  EXPECT_FALSE(foreign.materials[0].leaf.has_value());
+  EXPECT_TRUE(foreign.materials[0].transmission.has_value());
+}
+
+TEST(StatedTransmission, WithATextureThatCannotBeReadItIsGuessed) {
+  TranslucentFile file;
+  file.through()["diffuseTransmissionTexture"]["texCoord"] = 1;
+  TranslucentFile broken;
+  broken.json["images"][1].erase("bufferView");
+  broken.json["images"][1]["uri"] = "data:image/png;base64,AAAA";
+  for (const TranslucentFile& bad : {file, broken}) {
+    const Plant plant = loadPlant(bad.write("stated_lost"));
+    EXPECT_FALSE(plant.materials[0].transmission.has_value());
+    EXPECT_TRUE(std::any_of(plant.notes.begin(), plant.notes.end(), [](const std::string& note) {
+      return note.find("guessed from its colour") != std::string::npos;
+    }));
+  }
+}
+
+TEST(StatedTransmission, NumbersOutOfRangeAreRefused) {
+  const auto refused = [](const char* key, const Json& value, const std::string& words) {
+    TranslucentFile file;
+    file.through()[key] = value;
+    try {
+      loadPlant(file.write("stated_bad"));
+      ADD_FAILURE() << "was taken: " << value;
+    } catch (const Error& error) {
+      const std::string text = error.what();
+      EXPECT_NE(text.find(key), std::string::npos) << text;
+      EXPECT_NE(text.find(words), std::string::npos) << text;
+      EXPECT_NE(text.find("'leaf'"), std::string::npos) << text;
+    }
+  };
+  refused("diffuseTransmissionFactor", 1.01, "1.01 is outside of [0, 1]");
+  refused("diffuseTransmissionFactor", -0.1, "-0.1 is outside of [0, 1]");
+  refused("diffuseTransmissionFactor", "NaN", "not a number");
+  refused("diffuseTransmissionColorFactor", {0.5, 2.0, 0.5}, "2 is outside of [0, 1]");
+  refused("diffuseTransmissionColorFactor", {0.5, 0.5}, "not 3 numbers");
 }
 
 }  // namespace

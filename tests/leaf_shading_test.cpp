@@ -3,12 +3,13 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "base/random.h"
+#include "even_leaf.h"
 #include "render_fixture.h"
-#include "shared/color.h"
 #include "shared/cook_torrance.h"
 #include "shared/leaf_basis.h"
 #include "shared/sh.h"
 #include "verdure/harmonics.h"
+#include "verdure/leaf_grow.h"
 #include "verdure/leaf_plant.h"
 
 namespace verdure::test {
@@ -114,62 +115,8 @@ TEST(LeafSky, LightAlongAVectorIsItsIntegral) {
   }
 }
 
-/// A leaf 2 m wide that is the same everywhere.
-LeafSet evenSet() {
-  LeafSet set;
-  set.name = "even";
-  set.width = set.height = 8;
-  set.mm_per_texel = 250.0f;
-  const auto fill = [&set](const auto& value) {
-    return std::vector<std::remove_cvref_t<decltype(value)>>(set.texelCount(), value);
-  };
-  set.front = {fill(glm::vec3(0.05f, 0.12f, 0.03f)), fill(glm::vec3(0.6f, 0.8f, 0.2f)),
-               fill(glm::vec3(0, 0, 1)), fill(0.1f)};
-  set.back = {fill(glm::vec3(0.2f, 0.3f, 0.15f)), fill(glm::vec3(0.5f, 0.7f, 0.3f)),
-              fill(glm::vec3(0, 0, 1)), fill(0.1f)};
-  set.thickness_mm = fill(0.2f);
-  set.opacity = fill(1.0f);
-  return set;
-}
-
-LeafTranslucency evenLight(const glm::vec3& front_h, const glm::vec3& back_h) {
-  return {8, 8, std::vector<glm::vec3>(64, front_h), std::vector<glm::vec3>(64, back_h), {}};
-}
-
-/// It, in z = 0 facing +z, around the origin.
-Plant evenLeaf(const glm::vec3& front_h, const glm::vec3& back_h) {
-  LeafPlantOptions options;
-  options.segments = 2;
-  Plant plant = leafPlant(evenSet(), evenLight(front_h, back_h), options);
-  LeafTextures& leaf = *plant.materials[0].leaf;
-  leaf.front_roughness = leaf.back_roughness = 0.0f;
-  // An even map has no range of its own.
-  leaf.front_scale = leaf.back_scale = 1.0f;
-  for (const auto& [texture, h, offset] :
-       {std::tuple{leaf.front_light, front_h, &leaf.front_offset},
-        std::tuple{leaf.back_light, back_h, &leaf.back_offset}}) {
-    *offset = -0.2f;
-    Image& image = plant.textures[static_cast<std::size_t>(texture)].image;
-    for (std::size_t i = 0; i < image.rgba.size(); ++i)
-      if (i % 4 != 3) image.rgba[i] = toByte(h[static_cast<int>(i % 4)] + 0.2f);
-  }
-  for (glm::vec3& p : plant.meshes[0].positions) p.y -= 1.0f;
-  return plant;
-}
-
 /// Drivers decode bytes of sRGB to within 0.7 %.
 constexpr float kOfBytes = 1e-2f;
-
-/// What a texture holds, linear.
-glm::vec3 held(const Plant& plant, int texture, bool srgb) {
-  const Image& image = plant.textures[static_cast<std::size_t>(texture)].image;
-  glm::vec3 out;
-  for (int c = 0; c < 3; ++c) {
-    const float value = static_cast<float>(image.rgba[static_cast<std::size_t>(c)]) / 255.0f;
-    out[c] = srgb ? shared::linearFromSrgb(value) : value;
-  }
-  return out;
-}
 
 View leafView(bool from_front) {
   View view = quadView();
@@ -357,6 +304,130 @@ TEST(LeafAtlas, HoldsEachLeafInItsPlace) {
   leaves[1].mm_per_texel = 1.0f;
   EXPECT_THROW(tileLeaves(leaves, 2), Error);
   EXPECT_THROW(tileLeaves({}, 2), Error);
+}
+
+/// Four leaves of one size, each of its own seed and colours, with a margin around them.
+std::vector<LeafSet> fourLeaves() {
+  std::vector<LeafSet> leaves;
+  for (const std::uint32_t seed : {1u, 2u, 3u, 4u}) {
+    LeafGrowOptions options;
+    options.size = 128;
+    options.seed = seed;
+    options.age = 0.2f * static_cast<float>(seed);
+    leaves.push_back(growLeaf(options));
+    leaves.back().mm_per_texel = leaves.front().mm_per_texel;
+    leaves.back().optics = leaves.front().optics;
+  }
+  return leaves;
+}
+
+/// A sheet of a whole atlas, shrunk to the size of one tile, with that tile on it.
+Plant tileOf(Plant plant, int column, int row, int columns) {
+  const float size = 1.0f / static_cast<float>(columns);
+  for (Mesh& mesh : plant.meshes)
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+      const glm::vec2 own = mesh.uvs[v];
+      mesh.uvs[v] = (own + glm::vec2(static_cast<float>(column), static_cast<float>(row))) * size;
+      mesh.positions[v] *= glm::vec3(size, size, 1.0f);
+    }
+  return plant;
+}
+
+TEST_F(LeafShading, AnAtlasShowsEachLeafAsItselfAlone) {
+  const std::vector<LeafSet> leaves = fourLeaves();
+  const LeafSet atlas = tileLeaves(leaves, 2);
+  LeafPlantOptions flat;
+  flat.segments = 2;
+  const Plant together = leafPlant(atlas, bakeLeafTranslucency(atlas), flat);
+  View view = smallView(128, 128);
+  const float height = 1e-3f * leaves[0].mm_per_texel * 128.0f;
+  view.camera = {{0, 0.5f * height, 0.3f}, {0, 0.5f * height, 0}, 2.0f * std::atan(height / 0.6f)};
+  view.terms = presetTerms("habel");
+  view.terms.shadow = false;
+  view.background = glm::vec3(0.0f);
+  std::vector<HdrImage> seen;
+  for (const bool behind : {false, true}) {
+    setSun(view, glm::normalize(glm::vec3(0.4f, 0.3f, behind ? -0.8f : 0.8f)), {0.9f, 0.8f, 0.6f});
+    setFurnace(view, {0.1f, 0.2f, 0.3f});
+    for (int k = 0; k < 4; ++k) {
+      const Plant tile = tileOf(together, k % 2, k / 2, 2);
+      setItem(tile, nullptr);
+      const HdrImage in_atlas = renderer().render(view).hdr;
+      const LeafSet& set = leaves[static_cast<std::size_t>(k)];
+      const Plant alone = leafPlant(set, bakeLeafTranslucency(set), flat);
+      setItem(alone, nullptr);
+      const HdrImage single = renderer().render(view).hdr;
+      // Pixels are texels; at the outline they are partly covered.
+      int inside = 0, different = 0;
+      for (int y = 1; y < 127; ++y)
+        for (int x = 1; x < 127; ++x) {
+          bool leaf = true;
+          for (int dy = -1; dy <= 1; ++dy)
+            for (int dx = -1; dx <= 1; ++dx)
+              leaf = leaf && set.opacity[static_cast<std::size_t>(128 * (y + dy) + x + dx)] > 0.99f;
+          if (!leaf) continue;
+          ++inside;
+          const float a = luminanceAt(in_atlas, x, y), b = luminanceAt(single, x, y);
+          different += std::abs(a - b) > 0.04f * b ? 1 : 0;
+        }
+      SCOPED_TRACE(k);
+      EXPECT_GT(inside, 3000);
+      // The coefficients' bytes have another range in the atlas.
+      EXPECT_LT(different, inside / 100) << (behind ? "behind" : "in front");
+      if (behind) seen.push_back(single);
+    }
+  }
+  // No two of them look alike.
+  for (std::size_t a = 0; a < 4; ++a)
+    for (std::size_t b = 0; b < a; ++b) EXPECT_GT(countDifferent(seen[a], seen[b], 0.04f), 2000);
+}
+
+TEST_F(LeafShading, ACurvedLeafIsLitAsAFlatOneWhereTheyFaceTheSameWay) {
+  LeafGrowOptions grow;
+  grow.size = 128;
+  const LeafSet set = growLeaf(grow);
+  const LeafTranslucency light = bakeLeafTranslucency(set);
+  const float height = 1e-3f * set.mm_per_texel * 128.0f;
+  View view = smallView(96, 96);
+  view.terms = presetTerms("habel");
+  view.terms.shadow = false;
+  view.background = glm::vec3(0.0f);
+  // A strip across the leaf's middle, two texels high.
+  view.height = 2;
+  view.camera = {
+      {0, 0.5f * height, 0.3f}, {0, 0.5f * height, 0}, 2.0f * std::atan(height / 128.0f / 0.3f)};
+  LeafPlantOptions curved;
+  curved.segments = 64;
+  curved.bend_deg = 80.0f;
+  Plant bent = leafPlant(set, light, curved);
+  // The middle of its rib in the middle of the flat one's, and upright there.
+  const float angle = 0.5f * glm::radians(curved.bend_deg);
+  const glm::vec3 middle =
+      glm::vec3(0.0f, std::sin(angle), std::cos(angle) - 1.0f) * (0.5f * height / angle);
+  const glm::mat4 upright = glm::translate(glm::mat4(1.0f), glm::vec3(0, 0.5f * height, 0)) *
+                            glm::rotate(glm::mat4(1.0f), angle, glm::vec3(1, 0, 0)) *
+                            glm::translate(glm::mat4(1.0f), -middle);
+  LeafPlantOptions plain;
+  plain.segments = 2;
+  const Plant flat = leafPlant(set, light, plain);
+  for (const float z : {0.8f, -0.8f, 0.15f, -0.15f}) {
+    setSun(view, glm::normalize(glm::vec3(0.4f, 0.3f, z)), {0.9f, 0.8f, 0.6f});
+    setFurnace(view, {0.1f, 0.2f, 0.3f});
+    setItem(flat, nullptr);
+    const HdrImage card = renderer().render(view).hdr;
+    Scene scene = itemScene(bent, nullptr);
+    scene.items[0].world_from_plant = {upright};
+    renderer().setScene(scene);
+    const HdrImage curve = renderer().render(view).hdr;
+    double sum = 0.0, error = 0.0;
+    for (int y = 0; y < 2; ++y)
+      for (int x = 0; x < 96; ++x) {
+        sum += static_cast<double>(luminanceAt(card, x, y));
+        error += static_cast<double>(std::abs(luminanceAt(card, x, y) - luminanceAt(curve, x, y)));
+      }
+    EXPECT_GT(sum, 0.1);
+    EXPECT_LT(error / sum, 0.03) << z;
+  }
 }
 
 }  // namespace

@@ -87,14 +87,18 @@ TEST(FoliageShadow, PaperDarkensInwardsAndWithTheNumberOfLayers) {
 }
 
 TEST(FoliageShadow, TheTintIsThatOfTheLeaf) {
-  const glm::vec3 tint = shared::leafTint(kGreen), through = shared::leafTransmittance(kGreen);
+  const glm::vec3 tint = shared::leafTint(shared::leafTransmittance(kGreen)),
+                  through = shared::leafTransmittance(kGreen);
   for (int c = 0; c < 3; ++c)
-    EXPECT_NEAR(std::exp(-shared::leafOpticalDepth(kGreen) * tint[c]), through[c], 1e-5f);
-  EXPECT_NEAR(std::exp(-shared::leafOpticalDepth(kGreen)), shared::luminanceOf(through), 1e-6f);
+    EXPECT_NEAR(std::exp(-shared::leafOpticalDepth(shared::leafTransmittance(kGreen)) * tint[c]),
+                through[c], 1e-5f);
+  EXPECT_NEAR(std::exp(-shared::leafOpticalDepth(shared::leafTransmittance(kGreen))),
+              shared::luminanceOf(through), 1e-6f);
   // Black lets nothing through and white cannot (it reflects all): finite all the same.
   for (const glm::vec3& color : {glm::vec3(0.0f), glm::vec3(1.0f)}) {
-    EXPECT_NEAR(shared::leafOpticalDepth(color), 6.0f, 1e-4f);
-    for (int c = 0; c < 3; ++c) EXPECT_TRUE(std::isfinite(shared::leafTint(color)[c]));
+    EXPECT_NEAR(shared::leafOpticalDepth(shared::leafTransmittance(color)), 6.0f, 1e-4f);
+    for (int c = 0; c < 3; ++c)
+      EXPECT_TRUE(std::isfinite(shared::leafTint(shared::leafTransmittance(color))[c]));
   }
 }
 
@@ -154,7 +158,7 @@ TEST_F(LightDepth, TheGroundSeesEveryLayer) {
 
 TEST_F(LightDepth, LeavesSeeTheLayersInFront) {
   const glm::vec3 k_t = shared::leafTransmittance(kGreen);
-  const float depth = shared::leafOpticalDepth(kGreen);
+  const float depth = shared::leafOpticalDepth(shared::leafTransmittance(kGreen));
   for (const ShadowSource source : kDepthSources)
     for (const int layers : {1, 2, 4}) {
       std::vector<float> heights;
@@ -343,7 +347,8 @@ TEST_F(LightDepth, ThicknessComesFromTheMap) {
   // Without a thickness, that of the colour.
   quad.materials[0].optical_thickness = 0.0f;
   setItem(quad, nullptr);
-  expectCenter(view, kGreen * shared::meanScatteredLight(shared::leafOpticalDepth(kGreen)));
+  expectCenter(view, kGreen * shared::meanScatteredLight(
+                                  shared::leafOpticalDepth(shared::leafTransmittance(kGreen))));
 }
 
 }  // namespace

@@ -30,6 +30,15 @@ struct LeafTextures {
   float front_roughness = 0.3f, back_roughness = 0.0f, refractive_index = 1.45f;
 };
 
+/// Light through leaves as glTF states it (KHR_materials_diffuse_transmission): `factor` of all
+/// diffuse light goes through, in a colour of its own; the rest is reflected in the base colour.
+struct DiffuseTransmission {
+  float factor = 0.0f;      ///< [0, 1]
+  int factor_texture = -1;  ///< index into Plant::textures: its alpha times that
+  glm::vec3 color{1.0f};    ///< linear RGB, [0, 1]
+  int color_texture = -1;   ///< index into Plant::textures (sRGB): times that
+};
+
 /// How a surface looks, in the terms of glTF that verdure uses.
 struct Material {
   std::string name;
@@ -46,6 +55,8 @@ struct Material {
   float alpha_cutoff = 0.5f;
   bool double_sided = false;
   std::optional<LeafTextures> leaf = {};  ///< of foliage only
+  /// Of foliage without `leaf`; not set: guessed from its colour (shared/leaf.h).
+  std::optional<DiffuseTransmission> transmission = {};
 };
 
 struct Texture {

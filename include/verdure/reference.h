@@ -31,7 +31,8 @@ struct ReferenceOptions {
       32;  ///< surfaces that light may scatter at on its way, >= 1; 1 = direct light alone
   std::uint32_t seed = 1;
   bool normal_maps = true;
-  bool gloss = true;  ///< highlights of leaves and wood
+  bool gloss = true;      ///< highlights of leaves and wood
+  bool leaf_maps = true;  ///< leaves by Material::leaf where they have it, else by their colour
   LightSearch search = LightSearch::kBoth;
   /// Called from the calling thread after each round with the share done in [0, 1].
   std::function<void(double share)> progress;
@@ -52,11 +53,14 @@ struct ReferencePicture {
 ///
 /// Wood and ground reflect diffusely, leaves on both sides, and transmit diffusely
 /// (shared/leaf.h). Leaves and wood have the gloss of a clear rough surface over it (Cook and
-/// Torrance 1982), which takes from the light below what it reflects. Shading normals may point
-/// away from the triangle's side: the part of a lobe that would go through the surface is mirrored
-/// back, so that as much light leaves as arrives. The sun is seen, and its disk shines, only above
-/// the horizon; the last half degree of the sky, and what an eye without ground sees below it, look
-/// as the sky does there (shared::domeDirection()), as in the renderer.
+/// Torrance 1982), which takes from the light below what it reflects. Leaves with maps of their own
+/// have each side's albedo, normals and gloss, and pass light on as (3.23) of Habel 2009
+/// (shared/leaf_basis.h), the maps' three coefficients; their gloss takes what it mirrors there,
+/// too, and where albedo and light through the leaf sum to more than 1, less comes through. Shading
+/// normals may point away from the triangle's side: the part of a lobe that would go through the
+/// surface is mirrored back, so that as much light leaves as arrives. The sun is seen, and its disk
+/// shines, only above the horizon; the last half degree of the sky, and what an eye without ground
+/// sees below it, look as the sky does there (shared::domeDirection()), as in the renderer.
 ///
 /// A picture depends on the scene, the options and the number of samples, not on threads or time.
 /// Throws Error for options out of range and what RayScene refuses.

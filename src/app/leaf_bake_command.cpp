@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "app/commands.h"
+#include "app/json_numbers.h"
 #include "base/files.h"
 #include "base/progress.h"
 #include "verdure/error.h"
@@ -36,10 +37,10 @@ Json jsonOfReport(const LeafSet& set, const LeafBakeReport& r, const std::string
   return {{"name", set.name},
           {"width", set.width},
           {"height", set.height},
-          {"mm_per_texel", set.mm_per_texel},
+          {"mm_per_texel", sixDigits(double{set.mm_per_texel})},
           {"method", method},
           {"leaf_texels", r.texels},
-          {"thickness_mm", {r.least_thickness_mm, r.most_thickness_mm}},
+          {"thickness_mm", {sixDigits(r.least_thickness_mm), sixDigits(r.most_thickness_mm)}},
           {"clamped_texels", r.clamped},
           {"surface_reflection", r.surface_reflection},
           {"kernel_radius_mm", r.radius_mm},

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/json_numbers.h"
 #include "base/progress.h"
 #include "verdure/error.h"
 #include "verdure/leaf_files.h"
@@ -42,11 +43,15 @@ void runLeafGrow(const LeafGrowCommand& command) {
   thickness /= area;
   area *= static_cast<double>(leaf.mm_per_texel) * static_cast<double>(leaf.mm_per_texel);
   if (command.json) {
-    const Json json{{"folder", command.output},  {"species", leaf.name},
-                    {"seed", command.grow.seed}, {"age", command.grow.age},
-                    {"size", leaf.width},        {"mm_per_texel", leaf.mm_per_texel},
-                    {"area_mm2", area},          {"mean_thickness_mm", thickness},
-                    {"seconds_grow", seconds}};
+    const Json json{{"folder", command.output},
+                    {"species", leaf.name},
+                    {"seed", command.grow.seed},
+                    {"age", sixDigits(double{command.grow.age})},
+                    {"size", leaf.width},
+                    {"mm_per_texel", sixDigits(double{leaf.mm_per_texel})},
+                    {"area_mm2", sixDigits(area)},
+                    {"mean_thickness_mm", sixDigits(thickness)},
+                    {"seconds_grow", sixDigits(seconds)}};
     fmt::print("{}\n", json.dump(2));
   } else {
     fmt::print(

@@ -7,8 +7,8 @@
 #include <unordered_map>
 
 #include "base/parallel.h"
-#include "rays/texel_grid.h"
 #include "scene/scene.h"
+#include "scene/texel_grid.h"
 #include "verdure/error.h"
 #include "verdure/optical_depth.h"
 

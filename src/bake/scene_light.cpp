@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "bake/ray_directions.h"
-#include "shared/leaf.h"
 #include "shared/sky.h"
 #include "verdure/error.h"
 #include "verdure/harmonics.h"
@@ -172,8 +171,6 @@ void SceneLight::gather(std::span<const Slot> slots, float* sums) const {
 void SceneLight::tracePatch(TriangleId id, std::uint32_t part, Random& random) {
   const Split& split = splits_[first_triangle_[id.mesh] + id.triangle];
   const std::size_t sides = sidesOf(id.mesh), first = split.first + part * sides;
-  Side mean;
-  std::size_t points = 0;
   RayHit at;
   at.item = 0;
   at.mesh = id.mesh;
@@ -186,6 +183,8 @@ void SceneLight::tracePatch(TriangleId id, std::uint32_t part, Random& random) {
   for (std::size_t side = 0; side < sides; ++side) {
     const ShiftedLattice lattice(static_cast<int>(rays_each_), random);
     const std::size_t slot = first + side;
+    at.front = side == 0;
+    Side mean;
     std::size_t traced = 0;
     for (std::size_t r = 0; r < rays_each_; ++r) {
       constexpr int kTries = 32;
@@ -208,15 +207,11 @@ void SceneLight::tracePatch(TriangleId id, std::uint32_t part, Random& random) {
       if (!met_.empty()) met_[slot * rays_each_ + r] = met;
       ++traced;
       mean.reflectance += point.reflectance;
-      if (point.foliage) mean.transmittance += shared::leafTransmittance(point.reflectance);
+      mean.transmittance += point.transmittance;
     }
-    if (traced > 0) sides_[slot].weight = 1.0f / static_cast<float>(traced);
-    points += traced;
-  }
-  if (points == 0) return;
-  for (std::size_t slot = first; slot < first + sides; ++slot) {
-    sides_[slot].reflectance = mean.reflectance / static_cast<float>(points);
-    sides_[slot].transmittance = mean.transmittance / static_cast<float>(points);
+    if (traced == 0) continue;
+    const float weight = 1.0f / static_cast<float>(traced);
+    sides_[slot] = {mean.reflectance * weight, mean.transmittance * weight, weight};
   }
 }
 

@@ -182,6 +182,12 @@ class GltfImporter {
         const TextureUse map = readTexture(&info, who);
         return map.sameUvs(color) ? map.texture : -1;
       });
+      m.transmission = readDiffuseTransmission(document_, json, who, [&](const Json& info) {
+        const TextureUse map = readTexture(&info, who);
+        if (color.texture < 0) color = map;  // the only UVs
+        return map.sameUvs(color) ? map.texture : -1;
+      });
+      if (!m.transmission && extension(json, kDiffuseTransmission) != nullptr) noteGuessed(m);
       const std::string mode = readString(json, "alphaMode", "OPAQUE");
       m.alpha_mode = mode == "MASK"    ? AlphaMode::kMask
                      : mode == "BLEND" ? AlphaMode::kBlend
@@ -231,6 +237,7 @@ class GltfImporter {
     plant().textures = std::move(textures);
     for (Material& m : plant().materials) {
       if (m.leaf) keepLeaf(kept, m);
+      if (m.transmission) keepTransmission(kept, m);
       if (m.base_color_texture >= 0)
         m.base_color_texture = kept[static_cast<std::size_t>(m.base_color_texture)];
       if (m.normal_texture >= 0)
@@ -253,6 +260,24 @@ class GltfImporter {
     m.leaf.reset();
     plant().notes.push_back("material '" + m.name +
                             "': a map of its leaves cannot be read; all are left out");
+  }
+
+  /// What core glTF says of the light through a leaf is for those without maps of their own.
+  void keepTransmission(const std::vector<int>& kept, Material& m) {
+    if (m.leaf) return m.transmission.reset();
+    for (int* texture : {&m.transmission->factor_texture, &m.transmission->color_texture}) {
+      if (*texture < 0) continue;
+      *texture = kept[static_cast<std::size_t>(*texture)];
+      if (*texture >= 0) continue;
+      noteGuessed(m);
+      return m.transmission.reset();
+    }
+  }
+
+  void noteGuessed(const Material& m) {
+    plant().notes.push_back("material '" + m.name +
+                            "': a texture of the light through it cannot be read; that light is "
+                            "guessed from its colour");
   }
 
   // --- meshes

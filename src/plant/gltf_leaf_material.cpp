@@ -1,5 +1,7 @@
 #include "plant/gltf_leaf_material.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -37,9 +39,8 @@ constexpr std::array<LeafNumber, 3> kNumbers{{
 
 }  // namespace
 
-std::vector<std::string> writeLeafMaterial(const LeafTextures& leaf, float transmitted,
-                                           const std::function<int(int)>& texture_of,
-                                           Json& material) {
+void writeLeafMaterial(const LeafTextures& leaf, float transmitted,
+                       const std::function<int(int)>& texture_of, Json& material) {
   Json own = Json::object();
   for (const LeafTextureMember& entry : kTextures) {
     Json use = {{"index", texture_of(leaf.*entry.texture)}};
@@ -56,10 +57,9 @@ std::vector<std::string> writeLeafMaterial(const LeafTextures& leaf, float trans
   material["pbrMetallicRoughness"]["roughnessFactor"] =
       leaf.front_roughness > 0.0f ? std::sqrt(leaf.front_roughness) : 1.0f;
   material["extensions"]["KHR_materials_ior"] = {{"ior", leaf.refractive_index}};
-  material["extensions"]["KHR_materials_diffuse_transmission"] = {
+  material["extensions"][kDiffuseTransmission] = {
       {"diffuseTransmissionFactor", std::clamp(transmitted, 0.0f, 1.0f)},
       {"diffuseTransmissionColorTexture", {{"index", texture_of(leaf.front_translucency)}}}};
-  return {"KHR_materials_ior", "KHR_materials_diffuse_transmission"};
 }
 
 std::optional<LeafTextures> readLeafMaterial(const GltfDocument& document, const Json& material,
@@ -86,6 +86,46 @@ std::optional<LeafTextures> readLeafMaterial(const GltfDocument& document, const
     leaf.*number.value = static_cast<float>(value);
   }
   return leaf;
+}
+
+void writeDiffuseTransmission(const DiffuseTransmission& stated,
+                              const std::function<int(int)>& texture_of, Json& material) {
+  Json out = {{"diffuseTransmissionFactor", stated.factor}};
+  if (const int texture = texture_of(stated.factor_texture); texture >= 0)
+    out["diffuseTransmissionTexture"] = {{"index", texture}};
+  if (stated.color != glm::vec3(1.0f))
+    out["diffuseTransmissionColorFactor"] = {stated.color.r, stated.color.g, stated.color.b};
+  if (const int texture = texture_of(stated.color_texture); texture >= 0)
+    out["diffuseTransmissionColorTexture"] = {{"index", texture}};
+  material["extensions"][kDiffuseTransmission] = std::move(out);
+}
+
+std::optional<DiffuseTransmission> readDiffuseTransmission(
+    const GltfDocument& document, const Json& material, const std::string& who,
+    const std::function<int(const Json&)>& texture_of) {
+  const Json* in = extension(material, kDiffuseTransmission);
+  if (in == nullptr) return std::nullopt;
+  const auto share = [&](double value, const char* key) {
+    if (!(value >= 0.0 && value <= 1.0))
+      document.fail(fmt::format("{}: its {} of {} is outside of [0, 1]", who, key, value),
+                    "give shares of the light");
+    return static_cast<float>(value);
+  };
+  DiffuseTransmission stated;
+  const char* key = "diffuseTransmissionFactor";
+  stated.factor = share(readNumber(document, *in, key, 0.0, who), key);
+  glm::dvec3 color(1.0);
+  key = "diffuseTransmissionColorFactor";
+  readNumbers(document, *in, key, {&color[0], 3}, who);
+  for (int c = 0; c < 3; ++c) stated.color[c] = share(color[c], key);
+  for (const auto& [name, texture] :
+       {std::pair{"diffuseTransmissionTexture", &stated.factor_texture},
+        std::pair{"diffuseTransmissionColorTexture", &stated.color_texture}})
+    if (const Json* use = member(*in, name)) {
+      *texture = texture_of(*use);
+      if (*texture < 0) return std::nullopt;
+    }
+  return stated;
 }
 
 }  // namespace verdure

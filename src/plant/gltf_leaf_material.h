@@ -17,10 +17,9 @@ namespace verdure {
 
 /// Writes `leaf` into a material's JSON, with extensions that other programs know.
 /// `texture_of`: index into the document's textures. `transmitted`: share of the light that gets
-/// through the leaf, on the mean. Returns the extensions' names.
-std::vector<std::string> writeLeafMaterial(const LeafTextures& leaf, float transmitted,
-                                           const std::function<int(int)>& texture_of,
-                                           Json& material);
+/// through the leaf, on the mean.
+void writeLeafMaterial(const LeafTextures& leaf, float transmitted,
+                       const std::function<int(int)>& texture_of, Json& material);
 
 /// What a material's extras say of its leaf, nullopt if nothing. `texture_of`: reads a texture's
 /// use and gives its index into Plant::textures, -1 if it cannot be read or has UVs of its own.
@@ -28,6 +27,17 @@ std::vector<std::string> writeLeafMaterial(const LeafTextures& leaf, float trans
 std::optional<LeafTextures> readLeafMaterial(const GltfDocument& document, const Json& material,
                                              const std::string& who,
                                              const std::function<int(const Json&)>& texture_of);
+
+inline constexpr const char* kDiffuseTransmission = "KHR_materials_diffuse_transmission";
+
+/// Writes that extension alone, for leaves without maps of their own.
+void writeDiffuseTransmission(const DiffuseTransmission& stated,
+                              const std::function<int(int)>& texture_of, Json& material);
+
+/// What it says; nullopt if nothing, or if a texture of it gives -1. Throws as readLeafMaterial().
+std::optional<DiffuseTransmission> readDiffuseTransmission(
+    const GltfDocument& document, const Json& material, const std::string& who,
+    const std::function<int(const Json&)>& texture_of);
 
 }  // namespace verdure
 

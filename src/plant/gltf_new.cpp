@@ -88,10 +88,13 @@ class DocumentBuilder {
       json["alphaMode"] = "BLEND";
     }
     if (material.double_sided) json["doubleSided"] = true;
+    const auto texture_of = [this](int texture) { return textureOf(texture); };
     if (material.leaf)
-      for (const std::string& name : writeLeafMaterial(
-               *material.leaf, transmittedBy(*material.leaf),
-               [this](int texture) { return textureOf(texture); }, json)) {
+      writeLeafMaterial(*material.leaf, transmittedBy(*material.leaf), texture_of, json);
+    else if (material.transmission)
+      writeDiffuseTransmission(*material.transmission, texture_of, json);
+    if (json.contains("extensions"))
+      for (const auto& [name, value] : json["extensions"].items()) {
         Json& used = document_.json["extensionsUsed"];
         if (std::find(used.begin(), used.end(), name) == used.end()) used.push_back(name);
       }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "shared/color.h"
 #include "verdure/error.h"
@@ -69,7 +70,27 @@ struct Sheet {
     return rib + glm::vec3(x * std::cos(fold), 0.0f, 0.0f) +
            normal * (std::abs(x) * std::sin(fold));
   }
+  /// Unit, out of the front, over a step of the size of what is drawn.
+  glm::vec3 normal(float u, float v, float step_u, float step_v) const {
+    const glm::vec3 across = at(u + 0.5f * step_u, v) - at(u - 0.5f * step_u, v);
+    const glm::vec3 along = at(u, v - 0.5f * step_v) - at(u, v + 0.5f * step_v);
+    return glm::normalize(glm::cross(across, along));
+  }
 };
+
+/// Checks the options.
+Sheet sheetOf(const LeafSet& set, const LeafPlantOptions& options) {
+  const auto demand = [](bool good, const char* what, const char* range) {
+    if (!good) throw Error("leaf", std::string(what) + " is out of range", range);
+  };
+  demand(options.segments >= 1 && options.segments <= 1024, "segments", "choose 1 to 1024");
+  demand(std::abs(options.fold_deg) < 90.0f, "fold_deg", "choose more than -90 and less than 90");
+  demand(std::abs(options.bend_deg) <= 360.0f, "bend_deg", "choose -360 to 360");
+  demand(options.scale > 0.0f && std::isfinite(options.scale), "scale", "choose more than 0");
+  const float texel = 1e-3f * set.mm_per_texel * options.scale;
+  return {static_cast<float>(set.width) * texel, static_cast<float>(set.height) * texel,
+          glm::radians(options.fold_deg), glm::radians(options.bend_deg)};
+}
 
 }  // namespace
 
@@ -101,13 +122,7 @@ std::uint32_t addLeafMaterial(Plant& plant, const LeafSet& set, const LeafTransl
 
 Plant leafPlant(const LeafSet& set, const LeafTranslucency& light,
                 const LeafPlantOptions& options) {
-  const auto demand = [](bool good, const char* what, const char* range) {
-    if (!good) throw Error("leaf", std::string(what) + " is out of range", range);
-  };
-  demand(options.segments >= 1 && options.segments <= 1024, "segments", "choose 1 to 1024");
-  demand(std::abs(options.fold_deg) < 90.0f, "fold_deg", "choose more than -90 and less than 90");
-  demand(std::abs(options.bend_deg) <= 360.0f, "bend_deg", "choose -360 to 360");
-  demand(options.scale > 0.0f && std::isfinite(options.scale), "scale", "choose more than 0");
+  const Sheet sheet = sheetOf(set, options);
   Plant plant;
   plant.name = set.name;
   Mesh mesh;
@@ -115,9 +130,6 @@ Plant leafPlant(const LeafSet& set, const LeafTranslucency& light,
   mesh.kind = PartKind::kFoliage;
   mesh.material = addLeafMaterial(plant, set, light);
 
-  const float texel = 1e-3f * set.mm_per_texel * options.scale;
-  const Sheet sheet{static_cast<float>(set.width) * texel, static_cast<float>(set.height) * texel,
-                    glm::radians(options.fold_deg), glm::radians(options.bend_deg)};
   const int n = options.segments + options.segments % 2;  // an edge along the midrib
   const float step = 1.0f / static_cast<float>(n);
   for (int row = 0; row <= n; ++row)
@@ -125,9 +137,7 @@ Plant leafPlant(const LeafSet& set, const LeafTranslucency& light,
       const float u = static_cast<float>(column) * step, v = static_cast<float>(row) * step;
       mesh.positions.push_back(sheet.at(u, v));
       mesh.uvs.emplace_back(u, v);
-      const glm::vec3 across = sheet.at(u + 0.5f * step, v) - sheet.at(u - 0.5f * step, v);
-      const glm::vec3 along = sheet.at(u, v - 0.5f * step) - sheet.at(u, v + 0.5f * step);
-      mesh.normals.push_back(glm::normalize(glm::cross(across, along)));
+      mesh.normals.push_back(sheet.normal(u, v, step, step));
     }
   for (int row = 0; row < n; ++row)
     for (int column = 0; column < n; ++column) {
@@ -138,6 +148,53 @@ Plant leafPlant(const LeafSet& set, const LeafTranslucency& light,
     }
   plant.meshes.push_back(std::move(mesh));
   findLeaves(plant);
+  return plant;
+}
+
+Plant leafReliefPlant(const LeafSet& set, const LeafPlantOptions& options) {
+  checkLeafSet(set, set.name);
+  const Sheet sheet = sheetOf(set, options);
+  if (set.width < 2 || set.height < 2)
+    throw Error(set.name, "has one row or column", "give it more texels");
+  Plant plant;
+  plant.name = set.name;
+  const auto w = static_cast<float>(set.width), h = static_cast<float>(set.height);
+  for (const bool front : {true, false}) {
+    const LeafSide& side = front ? set.front : set.back;
+    Material& material = plant.materials.emplace_back();
+    material.name = front ? "front" : "back";
+    material.alpha_mode = AlphaMode::kMask;
+    material.base_color_texture = addColors(plant, set, material.name.c_str(), side.albedo, true);
+    material.normal_texture =
+        addNormals(plant, set, front ? "front_normal" : "back_normal", side.normal);
+    Mesh& mesh = plant.meshes.emplace_back();
+    mesh.name = material.name;
+    mesh.kind = PartKind::kFoliage;
+    mesh.material = front ? 0 : 1;
+    for (int row = 0; row < set.height; ++row)
+      for (int column = 0; column < set.width; ++column) {
+        const std::size_t texel = mesh.positions.size();
+        const float u = (static_cast<float>(column) + 0.5f) / w;
+        const float v = (static_cast<float>(row) + 0.5f) / h;
+        const glm::vec3 out = (front ? 1.0f : -1.0f) * sheet.normal(u, v, 1.0f / w, 1.0f / h);
+        mesh.positions.push_back(sheet.at(u, v) +
+                                 1e-3f * options.scale * side.relief_mm[texel] * out);
+        mesh.normals.push_back(out);
+        mesh.uvs.emplace_back(u, v);
+      }
+    for (int row = 0; row + 1 < set.height; ++row)
+      for (int column = 0; column + 1 < set.width; ++column) {
+        const auto corner = static_cast<std::uint32_t>(row * set.width + column);
+        const std::uint32_t right = corner + 1,
+                            below = corner + static_cast<std::uint32_t>(set.width);
+        for (const auto& [a, b, c] :
+             {std::tuple{corner, below, right}, {right, below, below + 1}}) {
+          mesh.indices.push_back(a);
+          mesh.indices.push_back(front ? b : c);
+          mesh.indices.push_back(front ? c : b);
+        }
+      }
+  }
   return plant;
 }
 

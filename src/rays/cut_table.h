@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "rays/texel_grid.h"
+#include "scene/texel_grid.h"
 
 namespace verdure {
 

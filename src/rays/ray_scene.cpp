@@ -16,6 +16,7 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "rays/cut_table.h"
+#include "scene/leaf_surface.h"
 #include "scene/scene.h"
 #include "shared/sky.h"
 #include "verdure/error.h"
@@ -69,8 +70,9 @@ struct PlantParts {
   std::vector<Part> parts;
   std::vector<TexelGrid> textures;  ///< of each mesh's base colour, if it has one
   std::vector<bool> textured;
-  std::vector<const CutTable*> cuts;  ///< of each mesh; null: opaque
-  RTCScene scene = nullptr;           ///< null unless it is instanced
+  std::vector<std::optional<LeafSurface>> leaves;  ///< of each mesh that is foliage
+  std::vector<const CutTable*> cuts;               ///< of each mesh; null: opaque
+  RTCScene scene = nullptr;                        ///< null unless it is instanced
 };
 
 struct Placement3 {
@@ -129,6 +131,7 @@ struct RayScene::State {
   std::vector<std::vector<Placement3>> placements;  ///< of each item
   std::vector<TopGeometry> top_geometries;          ///< by geometry ID
   std::map<std::pair<const Texture*, float>, std::unique_ptr<CutTable>> cut_tables;
+  bool leaf_maps = true;
   bool ground = false;
   float ground_height = 0.0f;
   float least_size = 0.0f;  ///< of coordinates, for originOff
@@ -192,6 +195,9 @@ void RayScene::State::splitPlant(PlantParts& p) {
     const bool textured = !mesh.uvs.empty() && material.base_color_texture >= 0;
     const bool cut = textured && material.alpha_mode != AlphaMode::kOpaque;
     p.textured.push_back(textured);
+    std::optional<LeafSurface>& leaf = p.leaves.emplace_back();
+    if (mesh.kind == PartKind::kFoliage)
+      leaf.emplace(plant, material, !mesh.uvs.empty(), leaf_maps);
     p.cuts.push_back(nullptr);
     p.textures.push_back(textured ? TexelGrid(textureOf(plant, material.base_color_texture))
                                   : TexelGrid());
@@ -274,6 +280,7 @@ void RayScene::State::commit(RTCScene scene) const {
 }
 
 void RayScene::State::build(const Scene& scene, const RaySceneOptions& options) {
+  leaf_maps = options.leaf_maps;
   notePlants(scene);
   std::size_t instances = 0;
   for (const PlantParts& p : plants) instances += p.placements > 1 ? p.placements : 0;
@@ -473,7 +480,12 @@ SurfacePoint RayScene::surfaceAt(const RayHit& hit, const Ray& ray) const {
   if (p.textured[hit.mesh])
     point.reflectance *= p.textures[hit.mesh].color(point.uv, p.cuts[hit.mesh] != nullptr);
   point.reflectance = glm::clamp(point.reflectance, 0.0f, 1.0f);
-  point.foliage = mesh.kind == PartKind::kFoliage;
+  if (const std::optional<LeafSurface>& leaf = p.leaves[hit.mesh]) {
+    const LeafDiffuse diffuse = leaf->at(point.uv, point.reflectance, hit.front);
+    point.reflectance = diffuse.reflectance;
+    point.transmittance = diffuse.transmittance;
+    point.foliage = true;
+  }
   return point;
 }
 

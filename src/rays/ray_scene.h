@@ -43,14 +43,19 @@ struct SurfacePoint {
   glm::vec3 normal{0.0f, 1.0f, 0.0f};
   glm::vec3 vertex_normal{0.0f, 1.0f, 0.0f};  ///< unit, interpolated from the mesh's normals
   glm::vec2 uv{0.0f};
-  glm::vec3 reflectance{0.0f};  ///< linear RGB in [0, 1]: base colour times texture, bilinear
-  bool foliage = false;         ///< lets light through: shared::leafTransmittance(reflectance)
+  /// Diffuse, of the side that RayHit::front names, linear RGB in [0, 1]: base colour times
+  /// texture, bilinear; of leaves with maps of both sides the side's own.
+  glm::vec3 reflectance{0.0f};
+  /// Share of even light on the other side that leaves here (LeafSurface); 0 but for foliage.
+  glm::vec3 transmittance{0.0f};
+  bool foliage = false;
 };
 
 struct Hit : RayHit, SurfacePoint {};
 
 struct RaySceneOptions {
   std::size_t max_memory_bytes = std::size_t{8} << 30;  ///< a scene that needs more is refused
+  bool leaf_maps = true;  ///< leaves by the maps of both their sides, where they have them
 };
 
 /// Sets this thread to flush denormals to zero while it lives, as Embree wants: hold one around

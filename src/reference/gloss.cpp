@@ -5,6 +5,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "base/parallel.h"
+#include "shared/cook_torrance.h"
 
 namespace verdure {
 namespace {
@@ -32,24 +33,49 @@ float fresnel(float facing, float cosine) {
   return facing + (1.0f - facing) * m2 * m2 * m;
 }
 
+/// A facet's normal, by two numbers in [0, 1).
+glm::vec3 beckmannFacet(float roughness, float u, float v) {
+  const float slope2 = -roughness * roughness * std::log(1.0f - u);
+  const float z = 1.0f / std::sqrt(1.0f + slope2), ring = z * std::sqrt(slope2);
+  const float turn = v * glm::two_pi<float>();
+  return {ring * std::cos(turn), ring * std::sin(turn), z};
+}
+
 }  // namespace
 
-Gloss::Gloss(float facing, float width) : facing_(facing), width_(width) {
-  // Over one half of the hemisphere, even in solid angle; the other is its mirror image.
+/// What is reflected towards `out`, z along the normal.
+float Gloss::integrated(const glm::vec3& out) const {
   constexpr int kAcross = 64;
   const glm::vec3 normal(0.0f, 0.0f, 1.0f);
+  double sum = 0.0;
+  if (facets_ == Facets::kBeckmann) {  // by the facets, because smooth surfaces have narrow lobes
+    for (int a = 0; a < kAcross * 2; ++a)
+      for (int b = 0; b < kAcross; ++b) {
+        const glm::vec3 facet =
+            beckmannFacet(width_, (static_cast<float>(a) + 0.5f) / (kAcross * 2),
+                          (static_cast<float>(b) + 0.5f) / kAcross);
+        const glm::vec3 in = 2.0f * glm::dot(out, facet) * facet - out;
+        const float chance = density(normal, out, in);
+        if (chance > 0.0f && in.z > 0.0f) sum += double{value(normal, out, in) / chance};
+      }
+    return static_cast<float>(sum / (kAcross * 2.0 * kAcross));
+  }
+  // Over one half of the hemisphere, even in solid angle; the other is its mirror image.
+  for (int a = 0; a < kAcross * 4; ++a)
+    for (int b = 0; b < kAcross; ++b) {
+      const float z = (static_cast<float>(a) + 0.5f) / (kAcross * 4);
+      const float turn = (static_cast<float>(b) + 0.5f) / kAcross * glm::pi<float>();
+      const float ring = std::sqrt(1.0f - z * z);
+      sum += double{value(normal, out, {ring * std::cos(turn), ring * std::sin(turn), z})};
+    }
+  return static_cast<float>(sum * glm::two_pi<double>() / (kAcross * 4.0 * kAcross));
+}
+
+Gloss::Gloss(Facets facets, float facing, float width)
+    : facets_(facets), facing_(facing), width_(width) {
   parallelFor(kCosines, 1, [&](std::size_t i) {
     const float cosine = (static_cast<float>(i) + 0.5f) / kCosines;
-    const glm::vec3 out(std::sqrt(1.0f - cosine * cosine), 0.0f, cosine);
-    double sum = 0.0;
-    for (int a = 0; a < kAcross * 4; ++a)
-      for (int b = 0; b < kAcross; ++b) {
-        const float z = (static_cast<float>(a) + 0.5f) / (kAcross * 4);
-        const float turn = (static_cast<float>(b) + 0.5f) / kAcross * glm::pi<float>();
-        const float ring = std::sqrt(1.0f - z * z);
-        sum += double{value(normal, out, {ring * std::cos(turn), ring * std::sin(turn), z})};
-      }
-    reflected_[i] = static_cast<float>(sum * glm::two_pi<double>() / (kAcross * 4.0 * kAcross));
+    reflected_[i] = integrated({std::sqrt(1.0f - cosine * cosine), 0.0f, cosine});
   });
   double mean = 0.0;
   constexpr int kSteps = 1024;
@@ -63,6 +89,8 @@ Gloss::Gloss(float facing, float width) : facing_(facing), width_(width) {
 float Gloss::value(const glm::vec3& normal, const glm::vec3& out, const glm::vec3& in) const {
   const float o = glm::dot(normal, out), i = glm::dot(normal, in);
   if (!(o > 0.0f && i > 0.0f)) return 0.0f;
+  if (facets_ == Facets::kBeckmann)
+    return shared::cookTorrance(normal, in, out, width_, facing_) / glm::pi<float>();
   const glm::vec3 half = glm::normalize(out + in);
   const float seen = 1.0f / (1.0f + hidden(o, width_) + hidden(i, width_));
   return distribution(glm::dot(normal, half), width_) * seen *
@@ -74,12 +102,20 @@ float Gloss::density(const glm::vec3& normal, const glm::vec3& out, const glm::v
   const glm::vec3 half = glm::normalize(out + in);
   const float facet = glm::dot(normal, half);
   if (!(o > 0.0f && facet > 0.0f)) return 0.0f;
+  if (facets_ == Facets::kBeckmann)
+    return shared::facetDensity(width_, facet) * facet /
+           (4.0f * std::max(glm::dot(out, half), 1e-6f));
   return distribution(facet, width_) / (1.0f + hidden(o, width_)) / (4.0f * o);
 }
 
 glm::vec3 Gloss::sample(const glm::vec3& normal, const glm::vec3& out, Random& random) const {
   const glm::mat3 axes = axesOf(normal);
   const glm::vec3 local = glm::transpose(axes) * out;
+  if (facets_ == Facets::kBeckmann) {
+    const float u = random.uniform();
+    const glm::vec3 facet = beckmannFacet(width_, u, random.uniform());
+    return axes * (2.0f * glm::dot(local, facet) * facet - local);
+  }
   // Stretched, the facets are a hemisphere; a point of the disc that `out` sees of it.
   const glm::vec3 v = glm::normalize(glm::vec3(width_ * local.x, width_ * local.y, local.z));
   const float radius = std::sqrt(random.uniform());

@@ -1,6 +1,8 @@
 // The reference: a path tracer with next-event estimation and multiple importance sampling (Veach,
 // Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", SIGGRAPH 1995; the
 // balance heuristic).
+#include "reference/path_tracer.h"
+
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
@@ -10,19 +12,20 @@
 #include "base/progress.h"
 #include "base/random.h"
 #include "rays/ray_scene.h"
+#include "reference/leaf_crossing.h"
 #include "reference/sky_sampler.h"
 #include "reference/surface_model.h"
 #include "scene/camera.h"
 #include "scene/look.h"
 #include "shared/sky.h"
 #include "verdure/error.h"
-#include "verdure/reference.h"
 
 namespace verdure {
 namespace {
 
-constexpr int kRouletteFrom = 4;  ///< scatterings after which paths may end by chance
-constexpr int kTile = 16;         ///< side of what a thread works on, pixels
+constexpr int kRouletteFrom = 4;       ///< scatterings after which paths may end by chance
+constexpr float kThroughShare = 0.8f;  ///< of the paths that go on through a LeafCrossing
+constexpr int kTile = 16;              ///< side of what a thread works on, pixels
 
 float luminanceOf(const glm::vec3& c) {
   return glm::dot(c, glm::vec3(0.2126f, 0.7152f, 0.0722f));
@@ -75,11 +78,13 @@ const Sky& skyOf(const Daylight& lights) {
 
 class PathTracer {
  public:
-  PathTracer(const Scene& scene, const Daylight& lights, const ReferenceOptions& options)
+  PathTracer(const Scene& scene, const Daylight& lights, const ReferenceOptions& options,
+             const LeafCrossing* leaf)
       : scene_(scene),
+        leaf_(leaf),
         options_(options),
-        rays_(scene),
-        surfaces_(scene, rays_, options.normal_maps, options.gloss),
+        rays_(scene, {.leaf_maps = options.leaf_maps}),
+        surfaces_(scene, rays_, {options.normal_maps, options.gloss, options.leaf_maps}),
         sky_(skyOf(lights)),
         sky_sampler_(sky_),
         sun_(lights.sun),
@@ -111,7 +116,8 @@ class PathTracer {
         return light;
       }
       if (depth == options_.bounces) return light;
-      const SurfaceModel::Point point = surfaces_.at(*hit, ray);
+      SurfaceModel::Point point = surfaces_.at(*hit, ray);
+      if (leaf_ != nullptr && !crossLeaf(*hit, point, throughput, random)) return light;
       if (depth == 0 && hit->ground()) {
         const float haze = shared::hazeShare(glm::length(point.position - ray.origin), haze_half_);
         light += haze * sky_.luminance(shared::domeDirection(ray.direction));
@@ -133,6 +139,24 @@ class PathTracer {
   }
 
  private:
+  /// Lets a path go on where it is, reflected, or at the other side of the leaf, through it: there
+  /// light enters as it falls on a white surface. False where it ends.
+  bool crossLeaf(const RayHit& hit, SurfaceModel::Point& point, glm::vec3& throughput,
+                 Random& random) const {
+    if (!hit.front) return false;  // through the open outline, between both surfaces
+    if (random.uniform() < kThroughShare) {
+      const std::optional<LeafCrossing::Entry> entry = leaf_->sample(hit, random);
+      if (!entry) return false;
+      throughput *= entry->weight / kThroughShare;
+      point = surfaces_.at(entry->hit, {point.position, 0.0f, -entry->outside});
+      point.scatterer.reflectance = glm::vec3(1.0f);
+    } else {
+      throughput /= 1.0f - kThroughShare;
+    }
+    point.scatterer.transmittance = glm::vec3(0.0f);
+    return true;
+  }
+
   /// What the eye sees along a ray, which then starts behind all that it does not see.
   std::optional<RayHit> firstSeen(Ray& ray) const {
     for (;;) {
@@ -198,6 +222,7 @@ class PathTracer {
   }
 
   const Scene& scene_;
+  const LeafCrossing* leaf_;
   const ReferenceOptions& options_;
   RayScene rays_;
   SurfaceModel surfaces_;
@@ -229,9 +254,14 @@ void checkOptions(const ReferenceOptions& options) {
 
 ReferencePicture renderReference(const Scene& scene, const Daylight& lights,
                                  const ReferenceOptions& options) {
+  return tracePicture(scene, lights, options, nullptr);
+}
+
+ReferencePicture tracePicture(const Scene& scene, const Daylight& lights,
+                              const ReferenceOptions& options, const LeafCrossing* leaf) {
   checkOptions(options);
   const Timer timer;
-  const PathTracer tracer(scene, lights, options);
+  const PathTracer tracer(scene, lights, options, leaf);
   const int tiles_across = (options.width + kTile - 1) / kTile;
   const int tiles_down = (options.height + kTile - 1) / kTile;
   const std::size_t pixels =

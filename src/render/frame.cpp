@@ -31,6 +31,7 @@ vk::raii::DescriptorSetLayout makeMaterialSet(const gpu::Device& device) {
   return gpu::makeSetLayout(device,
                             std::array{Type::eCombinedImageSampler, Type::eCombinedImageSampler,
                                        Type::eCombinedImageSampler, Type::eCombinedImageSampler,
+                                       Type::eCombinedImageSampler, Type::eCombinedImageSampler,
                                        Type::eCombinedImageSampler},
                             vk::ShaderStageFlagBits::eFragment);
 }

@@ -52,7 +52,7 @@ GpuScene::GpuScene(const gpu::Device& device, const PackedScene& packed,
   if (packed.materials.empty()) return;
   const auto count = static_cast<std::uint32_t>(packed.materials.size());
   const vk::DescriptorPoolSize size{.type = vk::DescriptorType::eCombinedImageSampler,
-                                    .descriptorCount = 5 * count};
+                                    .descriptorCount = 7 * count};
   pool_ = device.raii().createDescriptorPool(
       {.flags = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
        .maxSets = count,
@@ -79,8 +79,13 @@ GpuScene::GpuScene(const gpu::Device& device, const PackedScene& packed,
         describe(leaf_arrays_[slot.leaf_colors], slot.base_clamp);
     const vk::DescriptorImageInfo vectors =
         describe(leaf_arrays_[slot.leaf_vectors], slot.base_clamp);
+    const vk::DescriptorImageInfo share =
+        describe(textures_[slot.transmission_share], slot.share_clamp);
+    const vk::DescriptorImageInfo tint =
+        describe(textures_[slot.transmission_color], slot.tint_clamp);
     std::vector<vk::WriteDescriptorSet> writes;
-    for (const vk::DescriptorImageInfo* info : {&base, &normal, &thickness, &colors, &vectors})
+    for (const vk::DescriptorImageInfo* info :
+         {&base, &normal, &thickness, &colors, &vectors, &share, &tint})
       writes.push_back({.dstSet = *material_sets_[i],
                         .dstBinding = static_cast<std::uint32_t>(writes.size()),
                         .descriptorCount = 1,

@@ -15,7 +15,10 @@ constexpr std::uint32_t kFoliage[] = {
 
 gpu::Constants constantsOf(const Draw& draw, const Terms& terms) {
   return termConstants({.textures = terms.textures},
-                       {.alpha_test = draw.alpha_test, .foliage = draw.foliage});
+                       {.alpha_test = draw.alpha_test,
+                        .foliage = draw.foliage,
+                        .leaf = draw.leaf_maps ? LeafModel::kMaps : LeafModel::kColor,
+                        .stated_transmission = draw.stated_transmission});
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "render/look.h"
+#include "scene/leaf_surface.h"
 #include "scene/scene.h"
 #include "shared/density.h"
 #include "shared/foliage_shadow.h"
@@ -18,6 +19,13 @@ namespace {
 
 // A buffer of transfer vectors takes at most 64 MiB: half of what every device allows.
 constexpr std::size_t kTransferWords = std::size_t{1} << 24;
+
+/// Alpha as a grey picture.
+Image alphaOf(const Image& image) {
+  Image grey = image;
+  for (std::size_t i = 0; i < grey.rgba.size(); ++i) grey.rgba[i] = image.rgba[i | 3];
+  return grey;
+}
 
 class Packer {
  public:
@@ -90,8 +98,6 @@ class Packer {
       draw.instance_count = static_cast<std::uint32_t>(item.world_from_plant.size());
       if (draw.index_count == 0 || draw.instance_count == 0) continue;
       if (draw.foliage) {
-        draw.uniforms.leaf = glm::vec4(shared::leafTint(draw.uniforms.matt),
-                                       shared::leafOpticalDepth(draw.uniforms.matt));
         leaves += double(draw.index_count) * glm::dvec4(draw.uniforms.leaf);
         leaf_indices += double(draw.index_count);
       }
@@ -225,11 +231,17 @@ class Packer {
       slot.thickness_clamp = {texture.clamp_u, texture.clamp_v};
     }
     if (draw.foliage && textured && material.leaf) describeLeaf(plant, material, draw, slot);
+    if (draw.foliage && material.transmission && !draw.leaf_maps)
+      describeTransmission(plant, *material.transmission, textured, draw, slot);
     draw.material = addMaterial(slot);
-    const glm::vec3 mean = out_.textures[slot.base_color].mean_color;
+    const glm::vec3 mean =
+        glm::vec3(material.base_color) * out_.textures[slot.base_color].mean_color;
     draw.uniforms.color = material.base_color;
-    draw.uniforms.matt =
-        glm::vec4(glm::vec3(material.base_color) * mean, material.optical_thickness);
+    draw.uniforms.matt = glm::vec4(mean, material.optical_thickness);
+    if (draw.foliage) {
+      const glm::vec3 through = LeafSurface(plant, material, textured).meanTransmittance(mean);
+      draw.uniforms.leaf = glm::vec4(shared::leafTint(through), shared::leafOpticalDepth(through));
+    }
     draw.uniforms.surface = glm::vec4(cutoff, material.normal_scale,
                                       draw.foliage ? look::kLeafGlossWidth : look::kWoodGlossWidth,
                                       draw.foliage ? look::kLeafExponent : look::kWoodExponent);
@@ -246,6 +258,21 @@ class Packer {
         glm::vec4(maps.front_scale, maps.front_offset, maps.back_scale, maps.back_offset);
     draw.uniforms.leaf_gloss =
         glm::vec4(maps.front_roughness, maps.back_roughness, maps.refractive_index, 0.0f);
+  }
+
+  void describeTransmission(const Plant& plant, const DiffuseTransmission& stated, bool textured,
+                            Draw& draw, MaterialSlot& slot) {
+    draw.stated_transmission = true;
+    draw.uniforms.transmission = glm::vec4(stated.color, stated.factor);
+    const auto add = [&](int index, TextureJob::Kind kind, std::uint32_t& texture,
+                         std::array<bool, 2>& clamp) {
+      if (!textured || index < 0) return;
+      const Texture& source = textureOf(plant, index);
+      texture = addTexture({&source.image, kind, 0.0f});
+      clamp = {source.clamp_u, source.clamp_v};
+    };
+    add(stated.factor_texture, TextureJob::Kind::kAlpha, slot.transmission_share, slot.share_clamp);
+    add(stated.color_texture, TextureJob::Kind::kColor, slot.transmission_color, slot.tint_clamp);
   }
 
   std::uint32_t addLeafArray(const Plant& plant, const Material& material,
@@ -273,9 +300,11 @@ class Packer {
     const auto [entry, is_new] =
         known_textures_.try_emplace(job, static_cast<std::uint32_t>(out_.textures.size()));
     if (is_new) {
-      const bool linear = job.kind == TextureJob::Kind::kLinear;
-      out_.textures.push_back(linear ? buildLinearMips(*job.image)
-                              : job.kind == TextureJob::Kind::kAlphaCut
+      using Kind = TextureJob::Kind;
+      const bool linear = job.kind == Kind::kLinear || job.kind == Kind::kAlpha;
+      out_.textures.push_back(job.kind == Kind::kAlpha    ? buildLinearMips(alphaOf(*job.image))
+                              : job.kind == Kind::kLinear ? buildLinearMips(*job.image)
+                              : job.kind == Kind::kAlphaCut
                                   ? buildColorMips(*job.image, job.cutoff, used_[job])
                                   : buildColorMips(*job.image, std::nullopt));
       out_.texture_is_linear.push_back(linear);

@@ -34,8 +34,9 @@ struct Draw {
   bool alpha_test = false;
   bool normal_map = false;
   bool thickness_map = false;
-  bool leaf_maps = false;  ///< of its material
-  bool seen = true;        ///< else it is drawn into the shadow map alone
+  bool leaf_maps = false;            ///< of its material
+  bool stated_transmission = false;  ///< its material has DiffuseTransmission
+  bool seen = true;                  ///< else it is drawn into the shadow map alone
   std::uint32_t index_count = 0, first_index = 0;
   std::int32_t vertex_offset = 0;
   std::uint32_t instance_count = 0, first_instance = 0;
@@ -45,7 +46,7 @@ struct Draw {
 
 /// A texture to upload; equal ones are packed once.
 struct TextureJob {
-  enum class Kind { kColor, kAlphaCut, kLinear };
+  enum class Kind { kColor, kAlphaCut, kLinear, kAlpha };  ///< the last: alpha as grey
   const Image* image = nullptr;
   Kind kind = Kind::kColor;
   float cutoff = 0.0f;
@@ -53,7 +54,7 @@ struct TextureJob {
 };
 
 /// The textures that a draw binds, and how they repeat. Index 0 of a texture is plain white (base
-/// colour, thickness) or flat (normal map).
+/// colour, thickness, transmission) or flat (normal map).
 struct MaterialSlot {
   std::uint32_t base_color = 0;
   std::uint32_t normal_map = 0;
@@ -62,6 +63,8 @@ struct MaterialSlot {
   std::array<bool, 2> base_clamp{};                 ///< u, v
   std::array<bool, 2> normal_clamp{};
   std::array<bool, 2> thickness_clamp{};
+  std::uint32_t transmission_share = 0, transmission_color = 0;
+  std::array<bool, 2> share_clamp{}, tint_clamp{};
   auto operator<=>(const MaterialSlot&) const = default;
 };
 
@@ -105,8 +108,7 @@ struct PackedScene {
 PackedScene packScene(const Scene& scene);
 
 /// A packed scene on the GPU, with a descriptor set for each material (set 1: base colour, normal
-/// map, thickness, colours and
-/// vectors of leaves).
+/// map, thickness, colours and vectors of leaves, share and colour of what is transmitted).
 class GpuScene {
  public:
   GpuScene(const gpu::Device& device, const PackedScene& packed,

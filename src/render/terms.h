@@ -19,20 +19,31 @@ struct DrawKind {
   bool scattering = false;
   bool thickness_map = false;
   LeafModel leaf = LeafModel::kColor;
+  bool stated_transmission = false;
   auto operator<=>(const DrawKind&) const = default;
 };
 
 /// The specialisation constants, numbered as in src/shaders/terms.glsl.
 inline gpu::Constants termConstants(const Terms& terms, const DrawKind& kind) {
-  return {terms.ambient,      terms.diffuse,
-          terms.specular,     terms.shadow,
-          terms.textures,     static_cast<std::uint32_t>(kind.ambient_source),
-          kind.formula_sky,   kind.background,
-          kind.transmission,  kind.flip_normal,
-          kind.alpha_test,    kind.normal_map,
-          terms.gloss,        static_cast<std::uint32_t>(terms.shadow_source),
-          kind.foliage,       kind.scattering,
-          kind.thickness_map, static_cast<std::uint32_t>(kind.leaf)};
+  return {terms.ambient,
+          terms.diffuse,
+          terms.specular,
+          terms.shadow,
+          terms.textures,
+          static_cast<std::uint32_t>(kind.ambient_source),
+          kind.formula_sky,
+          kind.background,
+          kind.transmission,
+          kind.flip_normal,
+          kind.alpha_test,
+          kind.normal_map,
+          terms.gloss,
+          static_cast<std::uint32_t>(terms.shadow_source),
+          kind.foliage,
+          kind.scattering,
+          kind.thickness_map,
+          static_cast<std::uint32_t>(kind.leaf),
+          kind.stated_transmission};
 }
 
 }  // namespace verdure

@@ -8,6 +8,11 @@ vec3 worldFromPlant(vec3 p) {
   return vec3(dot(row0, q), dot(row1, q), dot(row2, q));
 }
 
+/// Whether the instance turns the triangles' winding over.
+bool isMirrored() {
+  return dot(row0.xyz, cross(row1.xyz, row2.xyz)) < 0.0;
+}
+
 /// Direction of a normal in the world: the cofactor matrix serves any scale. With `by_winding` a
 /// mirrored instance turns the normal over, as it does the triangles' winding.
 vec3 worldNormal(vec3 n, bool by_winding) {

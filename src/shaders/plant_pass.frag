@@ -11,15 +11,12 @@
 #include "shared/sh.h"
 #include "shared/tone.h"
 #include "terms.glsl"
+#include "leaf_maps.glsl"
 #include "sun_visibility.glsl"
 
 layout(set = 1, binding = 0) uniform sampler2D base_color;
 layout(set = 1, binding = 1) uniform sampler2D normal_map;
 layout(set = 1, binding = 2) uniform sampler2D thickness_map;
-// Of leaves; layer 0 is the back's albedo and normals, 1 and 2 are light through the leaf that leaves
-// the front and the back: its colour, and its coefficients.
-layout(set = 1, binding = 3) uniform sampler2DArray leaf_colors;
-layout(set = 1, binding = 4) uniform sampler2DArray leaf_vectors;
 layout(push_constant) uniform DrawBlock { DrawUniforms draw; };
 
 // Centroid: where a covered sample lies. At the edge of a small leaf the pixel's centre is outside,
@@ -76,8 +73,8 @@ vec3 mirroredLight(vec3 r, vec3 n, vec3 near, float k_a) {
 
 /// (6): the outgoing distance is random, but always the same for a texel of the leaf; where texels
 /// are smaller than pixels, its mean.
-float scatteredInLeaf(vec3 color, vec2 uv_x, vec2 uv_y) {
-  float s_i = draw.matt.w > 0.0 ? draw.matt.w : leafOpticalDepth(color);
+float scatteredInLeaf(vec3 k_t, vec2 uv_x, vec2 uv_y) {
+  float s_i = draw.matt.w > 0.0 ? draw.matt.w : leafOpticalDepth(k_t);
   if (kThicknessMap) s_i *= textureGrad(thickness_map, uv, uv_x, uv_y).g;
   vec2 size = vec2(textureSize(base_color, 0));
   float footprint = max(length(uv_x * size), length(uv_y * size));
@@ -121,17 +118,21 @@ void main() {
   vec3 v = normalize(frame.eye.xyz - position);
 
   // Light through the leaf: its colour and, as a vector, where it comes from.
-  vec3 k_t = kLeafHasMaps || !kTransmission ? vec3(0.0) : leafTransmittance(color);
+  vec3 k_t = leafTransmittance(color);
+  if (kStatedTransmission) {
+    float share = statedShare(draw.transmission.w, covered_uv, uv_x, uv_y);
+    k_t = share * statedColor(draw.transmission.rgb, covered_uv, uv_x, uv_y);
+    color *= 1.0 - share;
+  }
   vec3 through = vec3(0.0);
   float even = 1.0;
   if (kLeafHasMaps && kTransmission) {
     float layer = front ? 1.0 : 2.0;
-    vec2 range = front ? draw.leaf_light.xy : draw.leaf_light.zw;
-    vec3 h = textureGrad(leaf_vectors, vec3(uv, layer), uv_x, uv_y).rgb * range.x + range.y;
-    k_t = textureGrad(leaf_colors, vec3(covered_uv, layer), uv_x, uv_y).rgb;
+    vec3 h = lightCoefficients(layer, draw.leaf_light, uv, uv_x, uv_y);
+    k_t = lightColor(layer, covered_uv, uv_x, uv_y);
     even = leafEvenDirection(h).z;
     vec3 q = kLeafModel == kLeafMaps ? leafDirection(h) : vec3(0.0, 0.0, even);
-    through = side * vec3(q.x, q.y, -q.z);
+    through = leafThrough(side, q);
   }
 
   // The light on the side that is seen, and on the other.
@@ -154,7 +155,7 @@ void main() {
   }
   vec3 ambient = near * color;
   vec3 diffuse = kDiffuse ? color * diffuseFactor(n, l) : vec3(0.0);
-  if (kScattering) diffuse *= scatteredInLeaf(color, uv_x, uv_y);
+  if (kScattering) diffuse *= scatteredInLeaf(k_t * even, uv_x, uv_y);
   // Bumps that face a sun behind the leaf's plane are in its shade.
   float risen = kLeafHasMaps ? clamp(1.0 + 4.0 * dot(side[2], l), 0.0, 1.0) : 1.0;
   diffuse *= risen;

@@ -26,8 +26,7 @@ void main() {
   out_position = worldFromPlant(position);
   vec3 normal = worldNormal(decoded.xyz, kFlipNormal);
   out_normal = vec4(normal * inversesqrt(max(dot(normal, normal), 1e-30)), decoded.w);
-  // A mirrored instance turns the triangles' winding over.
-  bool mirrored = dot(row0.xyz, cross(row1.xyz, row2.xyz)) < 0.0;
+  bool mirrored = isMirrored();
   vec2 visibility = unpackVisibility(encoded_normal.w * 32767.0);
   out_visibility = mirrored ? visibility.yx : visibility;
   out_mirrored = mirrored ? 1u : 0u;

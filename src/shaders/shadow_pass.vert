@@ -3,13 +3,15 @@
 #include "frame_set.glsl"
 #include "instance.glsl"
 
-layout(push_constant) uniform CascadeBlock { layout(offset = 96) uint cascade; };
+layout(push_constant) uniform CascadeBlock { layout(offset = 112) uint cascade; };
 layout(location = 0) in vec3 position;
 layout(location = 2) in vec2 uv;
 layout(location = 0) out vec2 out_uv;
+layout(location = 1) flat out uint out_mirrored;
 
 void main() {
   vec3 at = (frame.shadow_from_world[cascade] * vec4(worldFromPlant(position), 1.0)).xyz;
   gl_Position = vec4(at.xy * 2.0 - 1.0, at.z, 1.0);
   out_uv = uv;
+  out_mirrored = isMirrored() ? 1u : 0u;
 }

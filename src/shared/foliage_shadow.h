@@ -17,17 +17,17 @@
 
 SHARED_BEGIN
 
-/// -ln(alpha) of a leaf of diffuse reflectance `color`, linear RGB in [0, 1], alpha the luminance
-/// that it lets through: [0, 6].
-SHARED_FUNCTION float leafOpticalDepth(vec3 color) {
-  return -log(clamp(luminanceOf(leafTransmittance(color)), 0.0024787522f, 1.0f));
+/// -ln(alpha) of a leaf of diffuse transmittance `through`, linear RGB in [0, 1], alpha its
+/// luminance: [0, 6].
+SHARED_FUNCTION float leafOpticalDepth(vec3 through) {
+  return -log(clamp(luminanceOf(through), 0.0024787522f, 1.0f));
 }
 
 /// The optical depth in each colour channel relative to leafOpticalDepth(): [0.25, 4].
-SHARED_FUNCTION vec3 leafTint(vec3 color) {
-  vec3 through = max(leafTransmittance(color), vec3(1e-6f));
-  vec3 depth = vec3(-log(through.x), -log(through.y), -log(through.z));
-  return clamp(depth / max(leafOpticalDepth(color), 1e-3f), vec3(0.25f), vec3(4.0f));
+SHARED_FUNCTION vec3 leafTint(vec3 through) {
+  vec3 least = max(through, vec3(1e-6f));
+  vec3 depth = vec3(-log(least.x), -log(least.y), -log(least.z));
+  return clamp(depth / max(leafOpticalDepth(through), 1e-3f), vec3(0.25f), vec3(4.0f));
 }
 
 /// What a filtered texel says.

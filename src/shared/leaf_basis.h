@@ -29,6 +29,13 @@ SHARED_FUNCTION vec3 leafEvenDirection(vec3 h) {
   return vec3(0.0f, 0.0f, 0.39894228f * (h.x + h.y + h.z));
 }
 
+/// leafDirection(), which has z out of the lit side, from the frame of the side that is looked at
+/// (right and up in its maps, out of it): light that arrives from a direction w is dot(it, w), for
+/// w beyond the leaf, and not below 0.
+SHARED_FUNCTION vec3 leafThrough(mat3 seen_side, vec3 q) {
+  return seen_side * vec3(q.x, q.y, -q.z);
+}
+
 /// (3.23) without colours: what of the sun's light leaves a point with coefficients `h`. `to_sun`:
 /// unit, in the frame of the side that is looked at (x right, y up in its maps, z out of it), the
 /// sun behind: to_sun.z <= 0. Single coefficients may be negative, light may not.

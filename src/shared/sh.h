@@ -38,15 +38,17 @@ SHARED_FUNCTION vec3 shIrradiance(vec3 normal, vec4 weights[9]) {
 /// direction, klx for a unit q; from the same weights as shIrradiance(), of which it is what is
 /// left for q = normal: irradiance grows along q by it when the normal turns there. Never negative.
 SHARED_FUNCTION vec3 shIrradianceAlong(vec3 normal, vec3 q, vec4 weights[9]) {
-  float out_of = dot(q, normal);
-  vec3 d = shFromWorld(normal), t = shFromWorld(q - normal * out_of);
-  vec4 slope = (weights[1] * t.y + weights[2] * t.z + weights[3] * t.x) * 0.48860251f;
-  slope += (weights[4] * (t.x * d.y + d.x * t.y) + weights[5] * (t.y * d.z + d.y * t.z) +
-            weights[7] * (t.x * d.z + d.x * t.z)) *
-           1.09254843f;
-  slope += weights[6] * (1.89234939f * d.z * t.z);
-  slope += weights[8] * (1.09254843f * (d.x * t.x - d.y * t.y));
-  return max(shIrradiance(normal, weights) * out_of + vec3(slope.x, slope.y, slope.z), vec3(0.0f));
+  // q's part along the normal times shIrradiance(), and the slope along the rest.
+  vec3 d = shFromWorld(normal), t = shFromWorld(q);
+  float out_of = dot(d, t);
+  vec3 rest = t - d * (0.5f * out_of);  // both products with d then make 2 d t - out_of d d
+  vec4 sum = weights[0] * (0.28209479f * out_of) - weights[6] * (0.31539157f * out_of);
+  sum += (weights[1] * t.y + weights[2] * t.z + weights[3] * t.x) * 0.48860251f;
+  sum += (weights[4] * (rest.x * d.y + d.x * rest.y) + weights[5] * (rest.y * d.z + d.y * rest.z) +
+          weights[7] * (rest.x * d.z + d.x * rest.z) + weights[8] * (d.x * rest.x - d.y * rest.y)) *
+         1.09254843f;
+  sum += weights[6] * (1.89234939f * d.z * rest.z);
+  return max(vec3(sum.x, sum.y, sum.z), vec3(0.0f));
 }
 
 SHARED_END

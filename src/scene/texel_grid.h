@@ -1,5 +1,5 @@
-#ifndef VERDURE_RAYS_TEXEL_GRID_H_
-#define VERDURE_RAYS_TEXEL_GRID_H_
+#ifndef VERDURE_SCENE_TEXEL_GRID_H_
+#define VERDURE_SCENE_TEXEL_GRID_H_
 
 #include <array>
 #include <cmath>
@@ -66,6 +66,9 @@ class TexelGrid {
     return cut && cut_weight > 1e-6f ? cut_sum / cut_weight : sum;
   }
 
+  /// Alpha in [0, 1].
+  float share(const glm::vec2& uv) const { return alpha(uv) / 255.0f; }
+
   /// The bytes as they are, in [0, 1]: of normal maps and other data.
   glm::vec3 data(const glm::vec2& uv) const {
     const Cell c = cellAt(uv);
@@ -103,4 +106,4 @@ class TexelGrid {
 
 }  // namespace verdure
 
-#endif  // VERDURE_RAYS_TEXEL_GRID_H_
+#endif  // VERDURE_SCENE_TEXEL_GRID_H_

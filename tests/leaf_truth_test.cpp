@@ -452,5 +452,33 @@ TEST_F(LeafTruth, AGrownLeafLooksAsTheRendererDrawsIt) {
     }
 }
 
+TEST_F(LeafTruth, ALowSunLightsBumpsAsRaysPastThemDo) {
+  const Birch& birch = Birch::get();
+  Plant plant = leafPlant(birch.set, birch.light);
+  const Scene scene = itemScene(plant, nullptr);
+  plant.materials[0].leaf->front_roughness = plant.materials[0].leaf->back_roughness = 0.0f;
+  renderer().setScene(scene);
+  View view = smallView(128, 128);
+  view.terms = presetTerms("habel");
+  view.terms.shadow = view.terms.ambient = false;
+  view.background = glm::vec3(0.0f);
+  view.daylight.sky = nullptr;
+  view.camera = automaticCamera(scene, 0.0f, 0.0f, 1.0f);
+  for (const float degrees : {-6.0f, -2.0f, 3.0f, 8.0f, 20.0f}) {
+    const float elevation = glm::radians(degrees);
+    setSun(view, {0.8f * std::cos(elevation), 0.6f * std::cos(elevation), std::sin(elevation)},
+           {0.9f, 0.8f, 0.6f});
+    ReferenceOptions options = directOptions(view, 64);
+    const ReferencePicture traced = renderLeafReference(birch.set, {}, {}, view.daylight, options);
+    const double truth = luminance(meanOf(traced.image));
+    const double found = luminance(meanOf(renderer().render(view).hdr));
+    RecordProperty(
+        "at" + std::to_string(static_cast<int>(degrees)),
+        std::to_string(found / truth) + " " + std::to_string(errorOfMean(traced) / truth));
+    // Within a few degrees of the plane next to no light is left.
+    EXPECT_NEAR(found / truth, 1.0, std::abs(degrees) < 5.0f ? 0.35 : 0.1) << degrees;
+  }
+}
+
 }  // namespace
 }  // namespace verdure::test

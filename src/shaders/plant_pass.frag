@@ -156,8 +156,8 @@ void main() {
   vec3 ambient = near * color;
   vec3 diffuse = kDiffuse ? color * diffuseFactor(n, l) : vec3(0.0);
   if (kScattering) diffuse *= scatteredInLeaf(k_t * even, uv_x, uv_y);
-  // Bumps that face a sun behind the leaf's plane are in its shade.
-  float risen = kLeafHasMaps ? clamp(1.0 + 4.0 * dot(side[2], l), 0.0, 1.0) : 1.0;
+  // Near its plane, bumps of a leaf that face the sun are in each other's shade.
+  float risen = kLeafHasMaps ? lightOnBumps(draw.leaf_gloss.w, dot(side[2], l)) : 1.0;
   diffuse *= risen;
   if (kTransmission) {
     bool summed = kLeafHasMaps && (kAmbientSource == kConstant || kAmbientSource == kTransfer);
@@ -165,7 +165,9 @@ void main() {
     if (kDiffuse) diffuse += k_t * (kLeafHasMaps ? max(dot(through, l), 0.0)
                                                  : diffuseFactor(-n, l));
   }
-  if (kGloss) {
+  float roughness = front ? draw.leaf_gloss.x : draw.leaf_gloss.y;
+  bool glossy = !kLeafHasMaps || roughness > 0.0;
+  if (kGloss && glossy) {
     float mirrored = glossReflected(draw.surface.z, max(dot(n, v), 0.0));
     ambient *= 1.0 - mirrored;
     diffuse *= 1.0 - mirrored;
@@ -173,9 +175,7 @@ void main() {
   }
   float k_s = highlightStrength(draw.surface.z), specular = 0.0;
   if (kSpecular && kLeafHasMaps) {
-    float roughness = front ? draw.leaf_gloss.x : draw.leaf_gloss.y;
-    if (roughness > 0.0)
-      specular = risen * cookTorrance(n, l, v, roughness, draw.leaf_gloss.z);
+    if (glossy) specular = risen * cookTorrance(n, l, v, roughness, draw.leaf_gloss.z);
     k_s = 1.0;
   } else if (kSpecular) {
     specular = specularFactor(n, l, v, draw.surface.w);

@@ -314,7 +314,7 @@ TEST(LeafBssrdf, AFlatLeafLetsThroughWhatTheClosedFormSays) {
     LeafSet set = flatLeaf(16, 16, 0.6f, thickness, 0.1f);
     const Multipole multipole(set.optics, insideReflection(1.33));
     const double total = 0.9 * 0.3 * multipole.total(double{thickness});
-    ReferenceOptions options = onTexels(set, 4096);
+    ReferenceOptions options = onTexels(set, 1536);
     options.width = options.height = 8;
     options.camera.vertical_fov *= 0.1f;
     const auto expect = [&](const Daylight& light, double expected) {
@@ -349,7 +349,7 @@ TEST(LeafBssrdf, IsTheSumOverTexelsOfTheBake) {
     const Plane sum = transport.throughDirectly(
         transport.enteringLight(1, {w}, {glm::vec3(1, 0, 0)})[0], 0, set.height);
     const ReferencePicture picture =
-        renderLeafReference(set, {}, {}, fromBehind(w), onTexels(set, 256));
+        renderLeafReference(set, {}, {}, fromBehind(w), onTexels(set, 96));
     // By blocks, because single pixels are noisy.
     constexpr int kBlock = 8;
     double squares = 0.0, errors = 0.0, of_sum = 0.0, of_picture = 0.0;

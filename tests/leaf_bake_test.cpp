@@ -8,7 +8,6 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
-#include "base/random.h"
 #include "leaf/fill_outside.h"
 #include "leaf/leaf_maps.h"
 #include "leaf/leaf_transport.h"
@@ -406,6 +405,30 @@ TEST(LeafBake, GaussiansAreTheDirectSum) {
     EXPECT_LT(relativeError(fast.front, direct.front), 1e-3) << texel;
     EXPECT_LT(relativeError(fast.back, direct.back), 1e-3) << texel;
     EXPECT_GT(relativeError(fast.back, direct.front), 0.01) << "the sides differ";
+  }
+}
+
+TEST(LeafBake, LightOfOneDirectionIsTheDirectSum) {
+  const LeafSet set = roughLeaf(45, 37, 0.2f);
+  const glm::vec3 w = glm::normalize(glm::vec3(0.7f, -0.4f, 0.5f));
+  LeafTransport leaf(set, {});
+  leaf.makeDirectKernel();
+  for (const bool back_lit : {false, true}) {
+    const Plane direct = leaf.throughDirectly(
+        leaf.enteringLight(back_lit ? 1 : 0, {w}, {glm::vec3(1, 0, 0)})[0], 0, set.height);
+    const std::vector<float> found = lightThroughLeaf(set, back_lit, w);
+    ASSERT_EQ(found.size(), set.texelCount());
+    double error = 0, size = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const std::size_t at = i / 45 * leaf.stride() + i % 45;
+      if (set.opacity[i] < 0.5f) {
+        EXPECT_EQ(found[i], 0.0f);
+        continue;
+      }
+      error += std::pow(double{found[i]} - double{direct[at]}, 2);
+      size += std::pow(double{direct[at]}, 2);
+    }
+    EXPECT_LT(std::sqrt(error / size), 1e-3);
   }
 }
 

@@ -308,6 +308,41 @@ Daylight fromBehind(const glm::vec3& w) {
   return light;
 }
 
+TEST(LeafRelief, HasBothSurfacesWhereTheyAre) {
+  const LeafSet set = roughLeaf(24, 16, 0.4f);
+  for (const float fold : {0.0f, 20.0f}) {
+    LeafPlantOptions shape;
+    shape.fold_deg = fold;
+    shape.scale = 2.0f;
+    const Plant plant = leafReliefPlant(set, shape);
+    ASSERT_EQ(plant.meshes.size(), 2u);
+    const Mesh &front = plant.meshes[0], &back = plant.meshes[1];
+    for (std::size_t i = 0; i < set.texelCount(); ++i) {
+      // Where the sheet is flat the two are as far apart as the leaf is thick, along the normal.
+      const glm::vec3 apart = front.positions[i] - back.positions[i];
+      EXPECT_NEAR(glm::length(apart), 2e-3f * set.thickness_mm[i], 1e-7f);
+      EXPECT_NEAR(glm::dot(apart, front.normals[i]), glm::length(apart), 1e-7f);
+      EXPECT_EQ(front.normals[i], -back.normals[i]);
+    }
+    for (const Mesh& mesh : plant.meshes)
+      for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+        const glm::vec3 a = mesh.positions[mesh.indices[i]];
+        const glm::vec3 face = glm::cross(mesh.positions[mesh.indices[i + 1]] - a,
+                                          mesh.positions[mesh.indices[i + 2]] - a);
+        EXPECT_GT(glm::dot(glm::normalize(face), mesh.normals[mesh.indices[i]]), 0.3f);
+      }
+  }
+  EXPECT_THROW(leafReliefPlant(flatLeaf(1, 16, 0.1f, 0.2f, 0.1f)), Error);
+}
+
+TEST(LeafBssrdf, RefusesBadOptions) {
+  const LeafSet set = flatLeaf(4, 4, 0.6f, 0.2f, 0.1f);
+  LeafBakeOptions bake;
+  bake.surface_reflection = 1.0f;
+  EXPECT_THROW(renderLeafReference(set, {}, bake, {}, onTexels(set, 1)), Error);
+  EXPECT_THROW(renderLeafReference(set, {}, {}, {}, onTexels(set, 0)), Error);
+}
+
 TEST(LeafBssrdf, AFlatLeafLetsThroughWhatTheClosedFormSays) {
   for (const float thickness : {0.13f, 0.2f, 0.5f}) {
     // The middle is farther from the outline than light gets.

@@ -36,7 +36,14 @@ inline Terms bestBaked() {
   return terms;
 }
 
-inline const std::array<Candidate, 9> kCandidates{{
+/// What `best` is of leaves by their colour, as if they had no maps.
+inline Terms bestByColor() {
+  Terms terms = presetTerms("best");
+  terms.leaf = LeafModel::kColor;
+  return terms;
+}
+
+inline const std::array<Candidate, 11> kCandidates{{
     {"standard", presetTerms("standard"), CrownBake::kMetaball, true},
     {"expressive", presetTerms("expressive"), CrownBake::kMetaball, false},
     {"expressive, optical depth", presetTerms("expressive"), CrownBake::kOpticalDepth, false},
@@ -46,7 +53,9 @@ inline const std::array<Candidate, 9> kCandidates{{
     {"depth-maps, ordered", presetWith("depth-maps", ShadowSource::kDepthOrdered),
      CrownBake::kLeafVisibility, true},
     {"transfer", presetTerms("transfer"), CrownBake::kOpticalDepth, true},
+    {"habel", presetTerms("habel"), CrownBake::kOpticalDepth, false},
     {"best, baked", bestBaked(), CrownBake::kOpticalDepth, false},
+    {"best, leaves by colour", bestByColor(), CrownBake::kOpticalDepth, false},
     {"best", presetTerms("best"), CrownBake::kOpticalDepth, true},
 }};
 

@@ -277,11 +277,14 @@ void runLeafFigures(const FiguresCommand& command) {
   sheet.fold_deg = kLeafFold_deg;
   subject.plant = leafPlant(subject.set, subject.light, sheet);
   progress.show("drawing");
+  drawCarriers(figures, subject);
   drawDataSet(figures.page(), subject.set);
   drawShading(figures, subject);
   drawNumbers(figures.page(), subject);
   progress.show("tracing");
   drawLeafTruth(figures, subject, command.samples);
+  progress.show("growing a tree");
+  drawLeafTree(figures, command.species);
   figures.page().write();
   fmt::print("{}\n", (figures.page().folder() / "index.html").string());
 }

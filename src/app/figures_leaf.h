@@ -26,6 +26,12 @@ Terms leafTerms(LeafModel model);
 /// a pixel.
 void drawLeafTruth(FigureSet& figures, const LeafSubject& subject, int samples);
 
+/// Figure 3.8.
+void drawCarriers(FigureSet& figures, const LeafSubject& subject);
+
+/// Figures 3.18 and 3.21, whose light and exposure stay.
+void drawLeafTree(FigureSet& figures, const std::string& species);
+
 }  // namespace verdure::app
 
 #endif  // VERDURE_APP_FIGURES_LEAF_H_

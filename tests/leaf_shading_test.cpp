@@ -7,6 +7,7 @@
 #include "render_fixture.h"
 #include "shared/cook_torrance.h"
 #include "shared/leaf_basis.h"
+#include "shared/normal_map.h"
 #include "shared/sh.h"
 #include "verdure/harmonics.h"
 #include "verdure/leaf_grow.h"
@@ -70,6 +71,27 @@ TEST(CookTorrance, LosesLightAndIsReciprocal) {
     }
   EXPECT_EQ(shared::cookTorrance(n, {0, 0, -1}, n, 0.2f, 1.4f), 0.0f);
   EXPECT_EQ(shared::cookTorrance(n, {1, 0, 0}, {-1, 0, 0}, 0.2f, 1.4f), 0.0f);
+}
+
+TEST(LeafBumps, GetWhatTheirPlaneGets) {
+  for (const float slope : {0.1f, 0.3f, 0.6f})
+    for (const float elevation : {0.02f, 0.1f, 0.3f, 0.8f, 1.5f}) {
+      const double up = std::sin(double{elevation}), along = std::cos(double{elevation});
+      // Slopes along the light are normally distributed; a bump's surface is 1 / n.z of its
+      // plane's.
+      const double sigma = double{slope} / std::sqrt(2.0);
+      double mean = 0.0;
+      constexpr int kSteps = 20000;
+      for (int i = 0; i < kSteps; ++i) {
+        const double x = -8.0 + 16.0 * (i + 0.5) / kSteps;
+        mean += std::exp(-0.5 * x * x) * std::max(up - sigma * x * along, 0.0) * 16.0 / kSteps /
+                std::sqrt(2.0 * M_PI);
+      }
+      const auto lit = double{shared::lightOnBumps(slope, static_cast<float>(up))};
+      EXPECT_NEAR(lit * mean, up, 0.005 * up) << slope << " " << elevation;
+    }
+  EXPECT_EQ(shared::lightOnBumps(0.3f, -0.1f), 0.0f);
+  EXPECT_EQ(shared::lightOnBumps(0.0f, 0.01f), 1.0f);
 }
 
 /// A sky of three bands, above 0 everywhere.

@@ -314,7 +314,7 @@ TEST(LeafBssrdf, AFlatLeafLetsThroughWhatTheClosedFormSays) {
     LeafSet set = flatLeaf(16, 16, 0.6f, thickness, 0.1f);
     const Multipole multipole(set.optics, insideReflection(1.33));
     const double total = 0.9 * 0.3 * multipole.total(double{thickness});
-    ReferenceOptions options = onTexels(set, 4096);
+    ReferenceOptions options = onTexels(set, 1536);
     options.width = options.height = 8;
     options.camera.vertical_fov *= 0.1f;
     const auto expect = [&](const Daylight& light, double expected) {
@@ -349,7 +349,7 @@ TEST(LeafBssrdf, IsTheSumOverTexelsOfTheBake) {
     const Plane sum = transport.throughDirectly(
         transport.enteringLight(1, {w}, {glm::vec3(1, 0, 0)})[0], 0, set.height);
     const ReferencePicture picture =
-        renderLeafReference(set, {}, {}, fromBehind(w), onTexels(set, 256));
+        renderLeafReference(set, {}, {}, fromBehind(w), onTexels(set, 96));
     // By blocks, because single pixels are noisy.
     constexpr int kBlock = 8;
     double squares = 0.0, errors = 0.0, of_sum = 0.0, of_picture = 0.0;
@@ -450,6 +450,34 @@ TEST_F(LeafTruth, AGrownLeafLooksAsTheRendererDrawsIt) {
       EXPECT_LT(difference / sum, 0.03) << from_front << " " << out;
       EXPECT_LT(std::abs(signed_difference) / sum, 0.01) << from_front << " " << out;
     }
+}
+
+TEST_F(LeafTruth, ALowSunLightsBumpsAsRaysPastThemDo) {
+  const Birch& birch = Birch::get();
+  Plant plant = leafPlant(birch.set, birch.light);
+  const Scene scene = itemScene(plant, nullptr);
+  plant.materials[0].leaf->front_roughness = plant.materials[0].leaf->back_roughness = 0.0f;
+  renderer().setScene(scene);
+  View view = smallView(128, 128);
+  view.terms = presetTerms("habel");
+  view.terms.shadow = view.terms.ambient = false;
+  view.background = glm::vec3(0.0f);
+  view.daylight.sky = nullptr;
+  view.camera = automaticCamera(scene, 0.0f, 0.0f, 1.0f);
+  for (const float degrees : {-6.0f, -2.0f, 3.0f, 8.0f, 20.0f}) {
+    const float elevation = glm::radians(degrees);
+    setSun(view, {0.8f * std::cos(elevation), 0.6f * std::cos(elevation), std::sin(elevation)},
+           {0.9f, 0.8f, 0.6f});
+    ReferenceOptions options = directOptions(view, 64);
+    const ReferencePicture traced = renderLeafReference(birch.set, {}, {}, view.daylight, options);
+    const double truth = luminance(meanOf(traced.image));
+    const double found = luminance(meanOf(renderer().render(view).hdr));
+    RecordProperty(
+        "at" + std::to_string(static_cast<int>(degrees)),
+        std::to_string(found / truth) + " " + std::to_string(errorOfMean(traced) / truth));
+    // Within a few degrees of the plane next to no light is left.
+    EXPECT_NEAR(found / truth, 1.0, std::abs(degrees) < 5.0f ? 0.35 : 0.1) << degrees;
+  }
 }
 
 }  // namespace

@@ -60,6 +60,11 @@ struct LeafTranslucency {
 /// Throws Error for a bad set or options.
 LeafTranslucency bakeLeafTranslucency(const LeafSet& set, const LeafBakeOptions& options = {});
 
+/// L_D (3.16) of light from the unit direction `w` itself, which the coefficients stand for: for
+/// each texel, 0 outside of the leaf. `w` is in the frame of the side that is lit, z >= 0.
+std::vector<float> lightThroughLeaf(const LeafSet& set, bool back_lit, const glm::vec3& w,
+                                    const LeafBakeOptions& options = {});
+
 /// How far three coefficients are from the light that they stand for (figure 3.19), at one
 /// elevation of the sun, over all texels of the leaf, both sides and four azimuths. Texels with
 /// less than a hundredth of the mean light are left out: a share of next to nothing says nothing.

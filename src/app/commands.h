@@ -204,6 +204,7 @@ struct FiguresCommand {
   std::string output = "figures";
   std::string species = "black-oak";
   std::string size = "640x640";
+  int samples = 32;  ///< of leaf's traced pictures
   DeviceOptions device;
 };
 void runLuftFigures(const FiguresCommand& command);

@@ -6,24 +6,17 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "app/figure_set.h"
+#include "app/figures_leaf.h"
 #include "base/progress.h"
 #include "leaf/multipole.h"
 #include "shared/color.h"
+#include "verdure/error.h"
 #include "verdure/leaf_grow.h"
-#include "verdure/leaf_plant.h"
 
 namespace verdure::app {
 namespace {
 
 constexpr int kMapPixels = 384;  ///< of a map's picture
-
-/// A leaf with the light through it, upright before the camera.
-struct Subject {
-  LeafSet set;
-  LeafTranslucency light;
-  Plant plant;
-};
 
 template <typename Texel>
 Image mapPicture(const LeafSet& set, Texel texel) {
@@ -76,29 +69,10 @@ void drawDataSet(Page& page, const LeafSet& set) {
   page.endRow();
 }
 
-/// The leaf alone, under the sun alone. `behind`: the sun stands behind the leaf, `elevation` above
-/// its plane.
-void lightLeaf(FigureSet& figures, float elevation, bool behind) {
-  View& view = figures.view();
-  view.daylight = parseDaylight({});
-  view.daylight.sky = nullptr;
-  const float out = behind ? -std::sin(elevation) : std::sin(elevation);
-  view.daylight.sun.direction =
-      glm::normalize(glm::vec3(std::cos(elevation) * 0.8f, std::cos(elevation) * 0.6f, out));
-  view.background = glm::vec3(0.02f);
-}
-
-Terms leafTerms(LeafModel model) {
-  Terms terms = presetTerms("habel");
-  terms.shadow = false;
-  terms.leaf = model;
-  return terms;
-}
-
 constexpr std::array<std::pair<const char*, float>, 3> kElevations{
     {{"90", glm::half_pi<float>()}, {"45", 0.25f * glm::pi<float>()}, {"12", 0.21f}}};
 
-void drawShading(FigureSet& figures, Subject& subject) {
+void drawShading(FigureSet& figures, LeafSubject& subject) {
   Page& page = figures.page();
   Scene scene;
   scene.items.push_back({&subject.plant, nullptr});
@@ -119,12 +93,13 @@ void drawShading(FigureSet& figures, Subject& subject) {
   page.paragraph("The front under the sun alone, from steep to grazing.");
   LeafTextures& leaf = *subject.plant.materials[0].leaf;
   const LeafTextures own = leaf;
-  leaf.front_roughness = 0.15f;
-  leaf.refractive_index = 1.6f;
-  row("figure3-10-glossy", false, LeafModel::kMaps, 13.5f, "roughness 0.15, index 1.6");
+  // Smoother, the highlight is tens of times as bright as the leaf: white in any exposure.
+  leaf.front_roughness = 0.22f;
+  leaf.refractive_index = 1.45f;
+  row("figure3-10-glossy", false, LeafModel::kMaps, 14.0f, "roughness 0.22, index 1.45");
   leaf.front_roughness = 0.5f;
   leaf.refractive_index = 1.3f;
-  row("figure3-10-matt", false, LeafModel::kMaps, 13.5f, "roughness 0.5, index 1.3");
+  row("figure3-10-matt", false, LeafModel::kMaps, 14.0f, "roughness 0.5, index 1.3");
   leaf = own;
 
   page.heading("Figure 3.11: translucency");
@@ -216,7 +191,7 @@ std::string errorPlot(const std::vector<LeafErrors>& errors) {
   return svg + "</svg>";
 }
 
-void drawNumbers(Page& page, const Subject& subject) {
+void drawNumbers(Page& page, const LeafSubject& subject) {
   page.heading("Figure 3.13: transmittance");
   page.paragraph(
       "T(r, d) of (3.8) for the leaf's optics, by the distance from where light enters.");
@@ -269,24 +244,44 @@ void drawNumbers(Page& page, const Subject& subject) {
 
 }  // namespace
 
+void lightLeaf(FigureSet& figures, float elevation, bool behind) {
+  View& view = figures.view();
+  view.daylight = parseDaylight({});
+  view.daylight.sky = nullptr;
+  const float out = behind ? -std::sin(elevation) : std::sin(elevation);
+  view.daylight.sun.direction =
+      glm::normalize(glm::vec3(std::cos(elevation) * 0.8f, std::cos(elevation) * 0.6f, out));
+  view.background = glm::vec3(0.02f);
+}
+
+Terms leafTerms(LeafModel model) {
+  Terms terms = presetTerms("habel");
+  terms.shadow = false;
+  terms.leaf = model;
+  return terms;
+}
+
 void runLeafFigures(const FiguresCommand& command) {
   FigureSet figures(command, "Leaves",
                     "Figures of chapter 3 of Habel (2009), from verdure's leaves on ");
+  if (command.samples < 1) throw Error("--samples", "must be at least 1", "32 is a fair start");
   Progress progress("figures leaf");
   progress.show("growing");
-  Subject subject;
+  LeafSubject subject;
   LeafGrowOptions grown;
   grown.species = command.species;
   subject.set = growLeaf(grown);
   progress.show("baking");
   subject.light = bakeLeafTranslucency(subject.set);
   LeafPlantOptions sheet;
-  sheet.fold_deg = 8.0f;
+  sheet.fold_deg = kLeafFold_deg;
   subject.plant = leafPlant(subject.set, subject.light, sheet);
   progress.show("drawing");
   drawDataSet(figures.page(), subject.set);
   drawShading(figures, subject);
   drawNumbers(figures.page(), subject);
+  progress.show("tracing");
+  drawLeafTruth(figures, subject, command.samples);
   figures.page().write();
   fmt::print("{}\n", (figures.page().folder() / "index.html").string());
 }

@@ -393,7 +393,10 @@ int run(int argc, char** argv) {
   CLI::App* gumbau_app =
       add_figures("gumbau", "Gumbau, Chover, Rebollo, Remolar 2008: 1 to 5", gumbau);
   CLI::App* leaf_figures_app =
-      add_figures("leaf", "Habel 2009, chapter 3: 3.9 to 3.19", leaf_figures);
+      add_figures("leaf", "Habel 2009, chapter 3: 3.9 to 3.20", leaf_figures);
+  leaf_figures_app
+      ->add_option("--samples", leaf_figures.samples, "Paths a pixel of traced pictures")
+      ->capture_default_str();
   SkyReport sky_figures;
   CLI::App* habel_app = figures_app->add_subcommand("sky", "Habel 2009: 5.3 to 5.7");
   habel_app->add_option("-o,--output", sky_figures.folder, "Folder to write")

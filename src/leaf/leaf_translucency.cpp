@@ -101,6 +101,19 @@ LeafTranslucency bakeLeafTranslucency(const LeafSet& set, const LeafBakeOptions&
   return baked;
 }
 
+std::vector<float> lightThroughLeaf(const LeafSet& set, bool back_lit, const glm::vec3& w,
+                                    const LeafBakeOptions& options) {
+  LeafTransport leaf(set, options);
+  const auto light = leaf.enteringLight(back_lit ? 1 : 0, {w}, {glm::vec3(1, 0, 0)});
+  const Plane through = leaf.throughGaussians(fit(leaf), {&light[0]})[0];
+  const auto width = static_cast<std::size_t>(set.width);
+  std::vector<float> texels;
+  for (std::size_t y = 0; y < static_cast<std::size_t>(set.height); ++y)
+    for (std::size_t i = y * leaf.stride(); i < y * leaf.stride() + width; ++i)
+      texels.push_back(leaf.inside()[i] != 0 ? through[i] : 0.0f);
+  return texels;
+}
+
 std::vector<LeafErrors> measureLeafErrors(const LeafSet& set, const LeafTranslucency& baked,
                                           const LeafBakeOptions& options) {
   constexpr int kAzimuths = 4;

@@ -24,7 +24,7 @@ namespace verdure {
 namespace {
 
 constexpr int kRouletteFrom = 4;       ///< scatterings after which paths may end by chance
-constexpr float kThroughShare = 0.8f;  ///< of the paths that go on through a LeafCrossing
+constexpr float kThroughShare = 0.6f;  ///< of the paths that go on through a LeafCrossing
 constexpr int kTile = 16;              ///< side of what a thread works on, pixels
 
 float luminanceOf(const glm::vec3& c) {
@@ -106,52 +106,66 @@ class PathTracer {
         1.0f;
     ray.direction = glm::normalize(camera_.forward + across * camera_.right + down * camera_.down);
 
-    glm::vec3 light(0.0f), throughput(1.0f);
-    float density = 0.0f;  // with which the last surface chose the ray
-    for (int depth = 0;; ++depth) {
-      const std::optional<RayHit> hit = depth == 0 ? firstSeen(ray) : rays_.trace(ray);
-      if (!hit) {
-        light +=
-            throughput * (depth == 0 ? seenSky(ray.direction) : foundSky(ray.direction, density));
-        return light;
+    const std::optional<RayHit> hit = firstSeen(ray);
+    if (!hit) return seenSky(ray.direction);
+    const SurfaceModel::Point point = surfaces_.at(*hit, ray);
+    if (leaf_ != nullptr) {
+      // Both ways on, not one by chance.
+      glm::vec3 light(0.0f);
+      for (const bool through : {true, false}) {
+        SurfaceModel::Point from = point;
+        glm::vec3 throughput(1.0f);
+        if (crossLeaf(*hit, through, from, throughput, random))
+          light += lightFrom(from, throughput, random);
       }
-      if (depth == options_.bounces) return light;
-      SurfaceModel::Point point = surfaces_.at(*hit, ray);
-      if (leaf_ != nullptr && !crossLeaf(*hit, point, throughput, random)) return light;
-      if (depth == 0 && hit->ground()) {
-        const float haze = shared::hazeShare(glm::length(point.position - ray.origin), haze_half_);
-        light += haze * sky_.luminance(shared::domeDirection(ray.direction));
-        throughput *= 1.0f - haze;
-      }
+      return light;
+    }
+    if (!hit->ground()) return lightFrom(point, glm::vec3(1.0f), random);
+    const float haze = shared::hazeShare(glm::length(point.position - ray.origin), haze_half_);
+    return haze * sky_.luminance(shared::domeDirection(ray.direction)) +
+           lightFrom(point, glm::vec3(1.0f - haze), random);
+  }
+
+ private:
+  /// Light that leaves the first surface of a path, times `throughput`.
+  glm::vec3 lightFrom(SurfaceModel::Point point, glm::vec3 throughput, Random& random) const {
+    glm::vec3 light(0.0f);
+    for (int depth = 1;; ++depth) {
       if (options_.search != LightSearch::kSurface)
         light += throughput * sampledLight(point, random);
       const std::optional<Scatterer::Sample> next = point.scatterer.sample(random);
       if (!next) return light;
       throughput *= next->weight;
-      density = point.scatterer.density(next->direction);
-      if (depth + 1 >= kRouletteFrom) {
+      const float density = point.scatterer.density(next->direction);  // that chose the ray
+      if (depth >= kRouletteFrom) {
         const float survival = std::min(std::max({throughput.x, throughput.y, throughput.z}), 1.0f);
         if (random.uniform() >= survival) return light;
         throughput /= survival;
       }
-      ray = {originTowards(point, next->direction), 0.0f, next->direction};
+      const Ray ray{originTowards(point, next->direction), 0.0f, next->direction};
+      const std::optional<RayHit> hit = rays_.trace(ray);
+      if (!hit) return light + throughput * foundSky(ray.direction, density);
+      if (depth == options_.bounces) return light;
+      point = surfaces_.at(*hit, ray);
+      if (leaf_ != nullptr) {
+        const bool through = random.uniform() < kThroughShare;
+        throughput /= through ? kThroughShare : 1.0f - kThroughShare;
+        if (!crossLeaf(*hit, through, point, throughput, random)) return light;
+      }
     }
   }
 
- private:
-  /// Lets a path go on where it is, reflected, or at the other side of the leaf, through it: there
-  /// light enters as it falls on a white surface. False where it ends.
-  bool crossLeaf(const RayHit& hit, SurfaceModel::Point& point, glm::vec3& throughput,
+  /// Takes a path to the other side of the leaf, where light enters as it falls on a white surface,
+  /// or leaves it on this one. False where it ends.
+  bool crossLeaf(const RayHit& hit, bool through, SurfaceModel::Point& point, glm::vec3& throughput,
                  Random& random) const {
-    if (!hit.front) return false;  // through the open outline, between both surfaces
-    if (random.uniform() < kThroughShare) {
+    if (!hit.front) return false;  // in by the open outline, between both surfaces
+    if (through) {
       const std::optional<LeafCrossing::Entry> entry = leaf_->sample(hit, random);
       if (!entry) return false;
-      throughput *= entry->weight / kThroughShare;
+      throughput *= entry->weight;
       point = surfaces_.at(entry->hit, {point.position, 0.0f, -entry->outside});
       point.scatterer.reflectance = glm::vec3(1.0f);
-    } else {
-      throughput /= 1.0f - kThroughShare;
     }
     point.scatterer.transmittance = glm::vec3(0.0f);
     return true;

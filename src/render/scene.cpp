@@ -256,7 +256,30 @@ class Packer {
     draw.uniforms.leaf_light =
         glm::vec4(maps.front_scale, maps.front_offset, maps.back_scale, maps.back_offset);
     draw.uniforms.leaf_gloss =
-        glm::vec4(maps.front_roughness, maps.back_roughness, maps.refractive_index, 0.0f);
+        glm::vec4(maps.front_roughness, maps.back_roughness, maps.refractive_index,
+                  material.normal_scale * bumpSlope(plant, material));
+  }
+
+  /// Root mean square slope of the normal maps of both sides, where the leaf is.
+  static float bumpSlope(const Plant& plant, const Material& material) {
+    if (material.normal_texture < 0) return 0.0f;
+    const Image* cut = material.base_color_texture >= 0
+                           ? &textureOf(plant, material.base_color_texture).image
+                           : nullptr;
+    double sum = 0.0, count = 0.0;
+    for (const int index : {material.normal_texture, material.leaf->back_normal}) {
+      const Image& image = textureOf(plant, index).image;
+      const bool same_size =
+          cut != nullptr && cut->width == image.width && cut->height == image.height;
+      for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+        if (same_size && cut->rgba[i + 3] < 128) continue;
+        const glm::vec3 texel(image.rgba[i], image.rgba[i + 1], image.rgba[i + 2]);
+        const glm::vec3 n = (texel - 128.0f) / 127.0f;
+        sum += double{(n.x * n.x + n.y * n.y) / std::max(n.z * n.z, 0.0025f)};
+        count += 1.0;
+      }
+    }
+    return count > 0.0 ? static_cast<float>(std::sqrt(sum / count)) : 0.0f;
   }
 
   void describeTransmission(const Plant& plant, const DiffuseTransmission& stated, bool textured,

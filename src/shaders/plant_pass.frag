@@ -156,8 +156,8 @@ void main() {
   vec3 ambient = near * color;
   vec3 diffuse = kDiffuse ? color * diffuseFactor(n, l) : vec3(0.0);
   if (kScattering) diffuse *= scatteredInLeaf(k_t * even, uv_x, uv_y);
-  // Bumps that face a sun behind the leaf's plane are in its shade.
-  float risen = kLeafHasMaps ? clamp(1.0 + 4.0 * dot(side[2], l), 0.0, 1.0) : 1.0;
+  // Near its plane, bumps of a leaf that face the sun are in each other's shade.
+  float risen = kLeafHasMaps ? lightOnBumps(draw.leaf_gloss.w, dot(side[2], l)) : 1.0;
   diffuse *= risen;
   if (kTransmission) {
     bool summed = kLeafHasMaps && (kAmbientSource == kConstant || kAmbientSource == kTransfer);

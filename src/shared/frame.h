@@ -42,7 +42,8 @@ struct DrawUniforms {
   vec4 leaf;     ///< leafTint() of the plant's foliage; w = leafOpticalDepth()
   vec4
       leaf_light;  ///< of LeafTextures: scale and offset of the front's coefficients, of the back's
-  vec4 leaf_gloss;    ///< roughness of the front, of the back, refractive index
+  vec4 leaf_gloss;    ///< roughness of the front, of the back, refractive index; w = slope of its
+                      ///< bumps
   vec4 transmission;  ///< DiffuseTransmission: colour; w = factor
 };
 SHARED_SIZE(DrawUniforms, 112);

@@ -26,6 +26,19 @@ SHARED_FUNCTION vec3 mappedNormal(mat3 frame_of_texture, vec3 texel, float scale
   return normalize(frame_of_texture * vec3(m.x * scale, m.y * scale, max(m.z, 0.05f)));
 }
 
+/// Share of the light on bumps that others between them and the light leave: Smith's shadowing of
+/// facets with Beckmann's distribution, by the fit of Walter et al., "Microfacet Models for
+/// Refraction through Rough Surfaces", 2007. With it bumps get on the mean what the plane gets.
+/// `slope`: root of their mean squared slope; `cosine`: of the light with the plane's normal, 0
+/// behind it.
+SHARED_FUNCTION float lightOnBumps(float slope, float cosine) {
+  if (cosine <= 0.0f) {
+    return 0.0f;
+  }
+  float a = cosine / (max(slope, 1e-4f) * sqrt(max(1.0f - cosine * cosine, 1e-8f)));
+  return a < 1.6f ? (3.535f * a + 2.181f * a * a) / (1.0f + 2.276f * a + 2.577f * a * a) : 1.0f;
+}
+
 SHARED_END
 
 #endif  // VERDURE_SHARED_NORMAL_MAP_H_

@@ -233,7 +233,7 @@ TEST_F(HdrRender, BlackLeavesShowTheirGlossAlone) {
       view.terms.ambient_source = source;
       view.camera.eye = {aside, 0.0f, 5.0f};
       const float mirrored =
-          shared::glossReflected(look::kLeafGlossWidth, -pixelRay(view, 32, 24).z);
+          shared::glossReflected(shared::glossWidth(true), 0.04f, -pixelRay(view, 32, 24).z);
       expectPixel(
           renderer().render(view).hdr, 32, 24,
           glm::vec3(1.0f, 2.0f, 3.0f) * mirrored * (source == AmbientSource::kBaked ? k_a : 1.0f),

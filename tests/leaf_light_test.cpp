@@ -202,7 +202,8 @@ TEST_F(LeafLight, GlossMirrorsTheShareThatTheFaceSees) {
   View view = ambientView(2.0f);
   setFurnace(view, {1.0f, 2.0f, 3.0f});
   view.terms.gloss = true;
-  const float mirrored = shared::glossReflected(look::kLeafGlossWidth, -pixelRay(view, 32, 24).z);
+  const float mirrored =
+      shared::glossReflected(shared::glossWidth(true), 0.04f, -pixelRay(view, 32, 24).z);
   expectPixel(renderer().render(view).hdr, 32, 24,
               glm::vec3(1.0f, 2.0f, 3.0f) * mirrored * kSeen.x * kSeen.x, 2e-3f);
 }

@@ -100,6 +100,51 @@ TEST_F(LeafThrough, TheSkyBehindShinesWithTheStatedShareAndColour) {
   }
 }
 
+TEST_F(LeafThrough, GlossIsAsStrongAsStated) {
+  const glm::vec3 color(0.2f, 0.3f, 0.1f), sky(0.5f, 0.25f, 0.125f);
+  for (const ClearSurface& surface :
+       {ClearSurface{}, ClearSurface{1.33f, 1.0f, glm::vec3(1.0f)},
+        ClearSurface{1.5f, 0.5f, glm::vec3(1.0f)}, ClearSurface{1.5f, 0.0f, glm::vec3(1.0f)},
+        ClearSurface{1.6f, 0.8f, glm::vec3(0.7f)}}) {
+    Plant plant = whiteQuad(glm::vec4(color, 1.0f));
+    plant.materials[0].surface = surface;
+    setItem(plant, nullptr);
+    const float ior = surface.refractive_index;
+    const float facing =
+        (ior - 1.0f) * (ior - 1.0f) / ((ior + 1.0f) * (ior + 1.0f)) * surface.color.x;
+    View view = quadView();
+    view.terms = presetTerms("transfer");
+    view.terms.shadow = view.terms.transmission = false;
+    const glm::vec3 l = glm::normalize(glm::vec3(0.3f, 0.2f, 0.9f));
+    setSun(view, l, {0.9f, 0.8f, 0.6f});
+    setFurnace(view, sky);
+    const glm::vec3 n(0, 0, 1), v = -pixelRay(view, 32, 24);
+    const float mirrored =
+        surface.strength * shared::glossReflected(shared::glossWidth(true), facing, v.z);
+    const float highlight = surface.strength * facing / (4.0f * 0.41f * 0.41f) *
+                            shared::specularFactor(n, l, v, shared::highlightExponent(true));
+    const glm::vec3 expected = (1.0f - mirrored) * color * (sky + sunLight(view) * l.z) +
+                               mirrored * sky + sunLight(view) * highlight;
+    expectPixel(renderer().render(view).hdr, 32, 24, expected, 2e-3f);
+    // In an even world gloss alone loses nothing that the path tracer keeps.
+    ReferenceOptions options;
+    options.width = options.height = 8;
+    options.samples = 256;
+    options.camera = view.camera;
+    Daylight even = view.daylight;
+    even.sun.luminance = glm::vec3(0.0f);
+    plant.meshes[0].kind = PartKind::kWood;
+    const Scene scene = itemScene(plant, nullptr);
+    const HdrImage traced = renderReference(scene, even, options).image;
+    glm::vec3 mean(0.0f);
+    for (const glm::vec3& texel : traced.rgb) mean += texel / 64.0f;
+    const float dull =
+        surface.strength * shared::glossReflected(shared::glossWidth(false), facing, v.z);
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(mean[c], sky[c] * (dull + (1.0f - dull) * color[c]), 0.02f * sky[c]);
+  }
+}
+
 /// The mean of what arrives on the ground below a leaf under the sun at the zenith, over what does
 /// without it.
 glm::vec3 arrivingBelow(Renderer& renderer, const Plant& leaf, bool turned, bool mirrored = false) {

@@ -222,5 +222,67 @@ TEST(StatedTransmission, NumbersOutOfRangeAreRefused) {
   refused("diffuseTransmissionColorFactor", {0.5, 0.5}, "not 3 numbers");
 }
 
+/// A foreign file with the extensions of gloss.
+struct GlossyFile : BoxFile {
+  GlossyFile() {
+    json["extensionsUsed"] = {"KHR_materials_ior", "KHR_materials_specular"};
+    json["materials"] = Json::array({{{"name", "leaf"}}});
+    primitive()["material"] = 0;
+    extensions() = {{"KHR_materials_ior", {{"ior", 1.375}}},
+                    {"KHR_materials_specular",
+                     {{"specularFactor", 0.25}, {"specularColorFactor", {1.0, 1.5, 0.5}}}}};
+  }
+  Json& extensions() { return json["materials"][0]["extensions"]; }
+  Plant load() const {
+    const fs::path path = scratchFolder("glossy") / "leaf.glb";
+    writeFile(path, glb());
+    return loadPlant(path);
+  }
+};
+
+TEST(StatedGloss, IsReadAndWrittenWithoutLoss) {
+  const GlossyFile file;
+  Plant plant = file.load();
+  const ClearSurface expected{1.375f, 0.25f, {1.0f, 1.5f, 0.5f}};
+  EXPECT_EQ(plant.materials[0].surface, expected);
+  const fs::path again = scratchFolder("glossy_again") / "leaf.glb";
+  savePlant(plant, nullptr, again);
+  EXPECT_EQ(glbJson(again)["materials"], file.json["materials"]);
+  plant.source = nullptr;
+  savePlant(plant, nullptr, again);
+  EXPECT_EQ(loadPlant(again).materials[0].surface, expected);
+  EXPECT_EQ(glbJson(again)["materials"][0]["extensions"], file.json["materials"][0]["extensions"]);
+  EXPECT_NE(runValidator({again.string()}), 1);
+  GlossyFile textured;
+  textured.extensions()["KHR_materials_specular"]["specularTexture"] = {{"index", 0}};
+  EXPECT_NE(textured.load().notes.at(0).find("specularTexture is left out"), std::string::npos);
+  // Where nothing is said nothing is written.
+  plant.materials[0].surface = {};
+  savePlant(plant, nullptr, again);
+  EXPECT_FALSE(glbJson(again)["materials"][0].contains("extensions"));
+  EXPECT_FALSE(glbJson(again).contains("extensionsUsed"));
+}
+
+TEST(StatedGloss, NumbersOutOfRangeAreRefused) {
+  const auto refused = [](const char* extension, const char* key, const Json& value) {
+    GlossyFile file;
+    file.extensions()[extension][key] = value;
+    try {
+      file.load();
+      ADD_FAILURE() << "was taken: " << value;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(key), std::string::npos) << error.what();
+    }
+  };
+  refused("KHR_materials_ior", "ior", 0.5);
+  refused("KHR_materials_ior", "ior", -1.5);
+  refused("KHR_materials_specular", "specularFactor", 1.5);
+  refused("KHR_materials_specular", "specularFactor", -0.5);
+  refused("KHR_materials_specular", "specularColorFactor", {0.5, -1.0, 0.5});
+  GlossyFile mirror;
+  mirror.extensions()["KHR_materials_ior"]["ior"] = 0;
+  EXPECT_GT(mirror.load().materials[0].surface.refractive_index, 1e6f);
+}
+
 }  // namespace
 }  // namespace verdure

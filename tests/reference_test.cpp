@@ -532,13 +532,18 @@ TEST(Gloss, IsTheSameBothWaysAndBrightestAtTheMirror) {
     EXPECT_NEAR(gloss.passed(a.y, b.y), gloss.passed(b.y, a.y), 1e-6f);
   }
   // Squarely: F D / 4, which is k_s / pi of the renderer's highlight.
-  EXPECT_NEAR(gloss.value(n, n, n), shared::highlightStrength(0.41f) / kPi, 1e-5f);
+  EXPECT_NEAR(gloss.value(n, n, n), shared::highlightStrength(0.41f, 0.04f) / kPi, 1e-5f);
   EXPECT_EQ(gloss.value(n, n, -n), 0.0f);
-  for (const float width : {0.3f, 0.41f, 0.6f, 0.82f, 1.0f}) {
-    const Gloss wide(shared::facetReflectance(), width);
-    for (float c = 0.02f; c <= 1.0f; c += 0.02f)
-      EXPECT_NEAR(shared::glossReflected(width, c), wide.reflected(c), 0.016f) << width << " " << c;
-  }
+  for (const float width : {0.3f, 0.41f, 0.6f, 0.82f, 1.0f})
+    for (const float index : {1.2f, 1.33f, 1.5f, 1.65f}) {
+      const float facing = shared::facetReflectance(index);
+      const Gloss wide(facing, width), half(facing, width, 0.5f);
+      for (float c = 0.02f; c <= 1.0f; c += 0.02f) {
+        EXPECT_NEAR(shared::glossReflected(width, facing, c), wide.reflected(c), 0.0175f)
+            << width << " " << index << " " << c;
+        EXPECT_NEAR(half.reflected(c), 0.5f * wide.reflected(c), 1e-5f);
+      }
+    }
   // Smooth and looked at squarely it reflects what its facets do.
   EXPECT_NEAR(Gloss(0.04f, 0.05f).reflected(1.0f), 0.04f, 2e-3f);
 }

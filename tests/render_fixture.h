@@ -153,10 +153,11 @@ inline glm::vec3 expectedLeafColor(const View& view, const glm::vec3& color, flo
                                    const glm::vec3& normal, const glm::vec3& point) {
   const glm::vec3 l = view.daylight.sun.direction;
   const glm::vec3 v = glm::normalize(view.camera.eye - point);
-  return shared::illumination(view.daylight.sky->luminance({0, 1, 0}) * color * k, sunLight(view),
-                              glm::vec3(1.0f), color * shared::diffuseFactor(normal, l),
-                              shared::highlightStrength(look::kLeafGlossWidth),
-                              shared::specularFactor(normal, l, v, look::kLeafExponent));
+  return shared::illumination(
+      view.daylight.sky->luminance({0, 1, 0}) * color * k, sunLight(view), glm::vec3(1.0f),
+      color * shared::diffuseFactor(normal, l),
+      shared::highlightStrength(shared::glossWidth(true), 0.04f),
+      shared::specularFactor(normal, l, v, shared::highlightExponent(true)));
 }
 
 /// kcd/m^2, to the precision of half floats.

@@ -39,6 +39,14 @@ struct DiffuseTransmission {
   int color_texture = -1;   ///< index into Plant::textures (sRGB): times that
 };
 
+/// The clear surface over a colour as glTF states it (KHR_materials_ior, KHR_materials_specular).
+struct ClearSurface {
+  float refractive_index = 1.5f;  ///< at least 1
+  float strength = 1.0f;          ///< [0, 1], of all that it reflects
+  glm::vec3 color{1.0f};          ///< linear RGB, at least 0: of what it reflects squarely
+  bool operator==(const ClearSurface&) const = default;
+};
+
 /// How a surface looks, in the terms of glTF that verdure uses.
 struct Material {
   std::string name;
@@ -57,6 +65,7 @@ struct Material {
   std::optional<LeafTextures> leaf = {};  ///< of foliage only
   /// Of foliage without `leaf`; not set: guessed from its colour (shared/leaf.h).
   std::optional<DiffuseTransmission> transmission = {};
+  ClearSurface surface = {};  ///< its gloss; that of `leaf` is its own
 };
 
 struct Texture {

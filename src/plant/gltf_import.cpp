@@ -188,6 +188,11 @@ class GltfImporter {
         return map.sameUvs(color) ? map.texture : -1;
       });
       if (!m.transmission && extension(json, kDiffuseTransmission) != nullptr) noteGuessed(m);
+      if (!m.leaf) m.surface = readClearSurface(document_, json, who);
+      if (const Json* specular = extension(json, "KHR_materials_specular"))
+        for (const char* key : {"specularTexture", "specularColorTexture"})
+          if (member(*specular, key) != nullptr)
+            plant().notes.push_back(who + ": its " + key + " is left out, its factor is not");
       const std::string mode = readString(json, "alphaMode", "OPAQUE");
       m.alpha_mode = mode == "MASK"    ? AlphaMode::kMask
                      : mode == "BLEND" ? AlphaMode::kBlend

@@ -37,6 +37,9 @@ constexpr std::array<LeafNumber, 3> kNumbers{{
     {"refractiveIndex", &LeafTextures::refractive_index, 1.0, 10.0},
 }};
 
+/// Reflects all, to seven digits.
+constexpr float kMirrorIndex = 1e8f;
+
 }  // namespace
 
 void writeLeafMaterial(const LeafTextures& leaf, float transmitted,
@@ -126,6 +129,42 @@ std::optional<DiffuseTransmission> readDiffuseTransmission(
       if (*texture < 0) return std::nullopt;
     }
   return stated;
+}
+
+void writeClearSurface(const ClearSurface& surface, Json& material) {
+  const ClearSurface plain;
+  if (surface.refractive_index != plain.refractive_index)
+    material["extensions"]["KHR_materials_ior"] = {{"ior", surface.refractive_index}};
+  Json specular = Json::object();
+  if (surface.strength != plain.strength) specular["specularFactor"] = surface.strength;
+  if (surface.color != plain.color)
+    specular["specularColorFactor"] = {surface.color.r, surface.color.g, surface.color.b};
+  if (!specular.empty()) material["extensions"]["KHR_materials_specular"] = std::move(specular);
+}
+
+ClearSurface readClearSurface(const GltfDocument& document, const Json& material,
+                              const std::string& who) {
+  const auto checked = [&](double value, const char* key, bool good, const char* range) {
+    if (!good) document.fail(fmt::format("{}: its {} of {} is not {}", who, key, value, range));
+    return static_cast<float>(value);
+  };
+  ClearSurface surface;
+  if (const Json* in = extension(material, "KHR_materials_ior")) {
+    const double index = readNumber(document, *in, "ior", 1.5, who);
+    // 0 stands for a mirror, of which index there is none.
+    surface.refractive_index =
+        index == 0.0 ? kMirrorIndex : checked(index, "ior", index >= 1.0, "0, or at least 1");
+  }
+  if (const Json* in = extension(material, "KHR_materials_specular")) {
+    const double factor = readNumber(document, *in, "specularFactor", 1.0, who);
+    surface.strength =
+        checked(factor, "specularFactor", factor >= 0.0 && factor <= 1.0, "in [0, 1]");
+    glm::dvec3 color(1.0);
+    readNumbers(document, *in, "specularColorFactor", {&color[0], 3}, who);
+    for (int c = 0; c < 3; ++c)
+      surface.color[c] = checked(color[c], "specularColorFactor", color[c] >= 0.0, "at least 0");
+  }
+  return surface;
 }
 
 }  // namespace verdure

@@ -39,6 +39,13 @@ std::optional<DiffuseTransmission> readDiffuseTransmission(
     const GltfDocument& document, const Json& material, const std::string& who,
     const std::function<int(const Json&)>& texture_of);
 
+/// Writes KHR_materials_ior and KHR_materials_specular, where they say something.
+void writeClearSurface(const ClearSurface& surface, Json& material);
+
+/// What they say; textures of them are left out. Throws as readLeafMaterial().
+ClearSurface readClearSurface(const GltfDocument& document, const Json& material,
+                              const std::string& who);
+
 }  // namespace verdure
 
 #endif  // VERDURE_PLANT_GLTF_LEAF_MATERIAL_H_

@@ -93,6 +93,7 @@ class DocumentBuilder {
       writeLeafMaterial(*material.leaf, transmittedBy(*material.leaf), texture_of, json);
     else if (material.transmission)
       writeDiffuseTransmission(*material.transmission, texture_of, json);
+    if (!material.leaf) writeClearSurface(material.surface, json);
     if (json.contains("extensions"))
       for (const auto& [name, value] : json["extensions"].items()) {
         Json& used = document_.json["extensionsUsed"];

@@ -71,8 +71,8 @@ float Gloss::integrated(const glm::vec3& out) const {
   return static_cast<float>(sum * glm::two_pi<double>() / (kAcross * 4.0 * kAcross));
 }
 
-Gloss::Gloss(Facets facets, float facing, float width)
-    : facets_(facets), facing_(facing), width_(width) {
+Gloss::Gloss(Facets facets, float facing, float width, float strength)
+    : facets_(facets), facing_(facing), width_(width), strength_(strength) {
   parallelFor(kCosines, 1, [&](std::size_t i) {
     const float cosine = (static_cast<float>(i) + 0.5f) / kCosines;
     reflected_[i] = integrated({std::sqrt(1.0f - cosine * cosine), 0.0f, cosine});
@@ -93,7 +93,7 @@ float Gloss::value(const glm::vec3& normal, const glm::vec3& out, const glm::vec
     return shared::cookTorrance(normal, in, out, width_, facing_) / glm::pi<float>();
   const glm::vec3 half = glm::normalize(out + in);
   const float seen = 1.0f / (1.0f + hidden(o, width_) + hidden(i, width_));
-  return distribution(glm::dot(normal, half), width_) * seen *
+  return strength_ * distribution(glm::dot(normal, half), width_) * seen *
          fresnel(facing_, glm::dot(out, half)) / (4.0f * o);
 }
 

@@ -17,11 +17,12 @@ namespace verdure {
 class Gloss {
  public:
   /// `facing`: reflectance of a facet that is looked at squarely, [0, 1]; `width`: GGX's alpha,
-  /// (0, 1].
-  Gloss(float facing, float width) : Gloss(Facets::kGgx, facing, width) {}
+  /// (0, 1]; `strength`: of all that is reflected, [0, 1].
+  Gloss(float facing, float width, float strength = 1.0f)
+      : Gloss(Facets::kGgx, facing, width, strength) {}
   /// Of leaves with maps: shared::cookTorrance(). `roughness`: m, above 0; `index` at least 1.
   static Gloss cookTorrance(float roughness, float index) {
-    return {Facets::kBeckmann, index, roughness};
+    return {Facets::kBeckmann, index, roughness, 1.0f};
   }
 
   /// Radiance towards `out` for that from `in`, times the cosine of `in`; 0 below the surface.
@@ -46,11 +47,12 @@ class Gloss {
  private:
   static constexpr std::size_t kCosines = 64;
   enum class Facets { kGgx, kBeckmann };
-  Gloss(Facets facets, float facing, float width);
+  Gloss(Facets facets, float facing, float width, float strength);
   float integrated(const glm::vec3& out) const;
 
   Facets facets_;
-  float facing_, width_;                     ///< or refractive index and m
+  float facing_, width_;  ///< or refractive index and m
+  float strength_;
   std::array<float, kCosines> reflected_{};  ///< at cosines (i + 1/2) / kCosines
   float mean_passed_ = 1.0f;                 ///< cosine-weighted over the hemisphere
 };

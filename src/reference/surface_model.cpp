@@ -134,10 +134,6 @@ std::optional<Scatterer::Sample> Scatterer::sample(Random& random) const {
 
 SurfaceModel::SurfaceModel(const Scene& scene, const RayScene& rays, const Options& options)
     : scene_(scene), rays_(rays), options_(options) {
-  if (options.gloss) {
-    leaf_gloss_.emplace(shared::facetReflectance(), look::kLeafGlossWidth);
-    wood_gloss_.emplace(shared::facetReflectance(), look::kWoodGlossWidth);
-  }
   if (scene.ground) {
     ground_.image = makeGroundTexture(look::kGroundTextureSize);
     ground_noise_.image = makeGroundNoise(look::kGroundNoiseSize);
@@ -146,8 +142,12 @@ SurfaceModel::SurfaceModel(const Scene& scene, const RayScene& rays, const Optio
     std::vector<MeshMaps>& maps = maps_.emplace_back();
     for (const Mesh& mesh : item.plant->meshes) {
       MeshMaps& entry = maps.emplace_back();
-      if (mesh.uvs.empty() || mesh.material >= item.plant->materials.size()) continue;
-      const Material& material = item.plant->materials[mesh.material];
+      static const Material kPlain;
+      const Material& material = mesh.material < item.plant->materials.size()
+                                     ? item.plant->materials[mesh.material]
+                                     : kPlain;
+      if (options.gloss) entry.gloss = glossOf(material, mesh.kind == PartKind::kFoliage);
+      if (mesh.uvs.empty()) continue;
       entry.normal_scale = material.normal_scale;
       if (options.normal_maps && material.normal_texture >= 0)
         entry.normal.emplace(textureOf(*item.plant, material.normal_texture));
@@ -158,6 +158,15 @@ SurfaceModel::SurfaceModel(const Scene& scene, const RayScene& rays, const Optio
     for (const glm::mat4& instance : item.world_from_plant)
       worlds.push_back(worldFromPlant(scene, item, instance));
   }
+}
+
+const Gloss* SurfaceModel::glossOf(const Material& material, bool foliage) {
+  const float strength = material.surface.strength;
+  if (!(strength > 0.0f)) return nullptr;
+  const std::array key{facingReflectance(material), shared::glossWidth(foliage), strength};
+  auto found = glosses_.find(key);
+  if (found == glosses_.end()) found = glosses_.emplace(key, Gloss(key[0], key[1], key[2])).first;
+  return &found->second;
 }
 
 SurfaceModel::LeafMaps SurfaceModel::leafMaps(const Plant& plant, const Material& material) {
@@ -217,8 +226,7 @@ SurfaceModel::Point SurfaceModel::at(const RayHit& hit, const Ray& ray) const {
   scatterer.normal = front ? surface.vertex_normal : -surface.vertex_normal;
   scatterer.reflectance = glm::clamp(surface.reflectance, 0.0f, 1.0f);
   scatterer.out = -glm::normalize(ray.direction);
-  if (const std::optional<Gloss>& gloss = surface.foliage ? leaf_gloss_ : wood_gloss_)
-    scatterer.gloss = &*gloss;
+  scatterer.gloss = maps.gloss;
   scatterer.transmittance = surface.transmittance;
   if (!maps.normal && !maps.leaf) return point;
 

@@ -92,8 +92,10 @@ class SurfaceModel {
   struct MeshMaps {
     std::optional<TexelGrid> normal;
     float normal_scale = 1.0f;
+    const Gloss* gloss = nullptr;
     std::optional<LeafMaps> leaf;
   };
+  const Gloss* glossOf(const Material& material, bool foliage);
   LeafMaps leafMaps(const Plant& plant, const Material& material);
   glm::mat3 textureFrame(const RayHit& hit, const glm::vec3& normal) const;
   static void lightThroughMaps(const LeafMaps& maps, bool front, const glm::vec2& uv,
@@ -103,7 +105,8 @@ class SurfaceModel {
   const Scene& scene_;
   const RayScene& rays_;
   Options options_;
-  std::optional<Gloss> leaf_gloss_, wood_gloss_;
+  /// By what facets reflect squarely, width and strength.
+  std::map<std::array<float, 3>, Gloss> glosses_;
   std::map<std::pair<float, float>, Gloss> leaf_glosses_;  ///< by roughness and refractive index
   std::vector<std::vector<MeshMaps>> maps_;                ///< by item and mesh
   std::vector<std::vector<glm::mat4>> worlds_;             ///< by item and instance

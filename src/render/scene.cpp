@@ -242,9 +242,8 @@ class Packer {
       const glm::vec3 through = LeafSurface(plant, material, textured).meanTransmittance(mean);
       draw.uniforms.leaf = glm::vec4(shared::leafTint(through), shared::leafOpticalDepth(through));
     }
-    draw.uniforms.surface = glm::vec4(cutoff, material.normal_scale,
-                                      draw.foliage ? look::kLeafGlossWidth : look::kWoodGlossWidth,
-                                      draw.foliage ? look::kLeafExponent : look::kWoodExponent);
+    draw.uniforms.surface = glm::vec4(cutoff, material.normal_scale, facingReflectance(material),
+                                      material.surface.strength);
   }
 
   void describeLeaf(const Plant& plant, const Material& material, Draw& draw, MaterialSlot& slot) {

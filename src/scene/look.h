@@ -13,10 +13,6 @@ inline constexpr float kGroundTile_m = 2.4f;
 inline constexpr float kHazeHalf = 22.0f;
 inline constexpr float kHazeHalfLeast_m = 80.0f;
 
-// Gloss of leaves and of wood: GGX's alpha, see shared/gloss.h. Leaves are waxy, bark is dull.
-inline constexpr float kLeafGlossWidth = 0.41f;
-inline constexpr float kWoodGlossWidth = 0.82f;
-
 // Added to every luminance before its logarithm, kcd/m^2: far below a starlit sky.
 inline constexpr float kLeastLuminance = 1e-9f;
 

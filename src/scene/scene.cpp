@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "shared/gloss.h"
+#include "shared/tone.h"
 #include "verdure/error.h"
 
 namespace verdure {
@@ -17,6 +19,13 @@ float textureCutoff(const Material& material) {
   const float cutoff =
       material.alpha_mode == AlphaMode::kMask ? material.alpha_cutoff : 0.5f;  // blended: as cut
   return std::clamp(cutoff / std::max(material.base_color.a, 1e-3f), 1.0f / 255.0f, 1.0f);
+}
+
+float facingReflectance(const Material& material) {
+  const ClearSurface& surface = material.surface;
+  return std::clamp(
+      shared::facetReflectance(surface.refractive_index) * shared::luminanceOf(surface.color), 0.0f,
+      1.0f);
 }
 
 const Texture& textureOf(const Plant& plant, int index) {

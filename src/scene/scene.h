@@ -12,6 +12,10 @@ glm::mat4 worldFromPlant(const Scene& scene, const SceneItem& item, const glm::m
 /// cut at a half.
 float textureCutoff(const Material& material);
 
+/// Luminance of what the facets of a material's gloss reflect that are looked at squarely, before
+/// its strength, [0, 1].
+float facingReflectance(const Material& material);
+
 /// Throws Error if the plant lacks it or its image is empty.
 const Texture& textureOf(const Plant& plant, int index);
 

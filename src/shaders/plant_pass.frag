@@ -165,20 +165,27 @@ void main() {
     if (kDiffuse) diffuse += k_t * (kLeafHasMaps ? max(dot(through, l), 0.0)
                                                  : diffuseFactor(-n, l));
   }
+<<<<<<< HEAD
   float roughness = front ? draw.leaf_gloss.x : draw.leaf_gloss.y;
   bool glossy = !kLeafHasMaps || roughness > 0.0;
   if (kGloss && glossy) {
     float mirrored = glossReflected(draw.surface.z, max(dot(n, v), 0.0));
+=======
+  if (kGloss) {
+    float mirrored = draw.surface.w * glossReflected(glossWidth(kFoliage), draw.surface.z,
+                                                     max(dot(n, v), 0.0));
+>>>>>>> leaf-light
     ambient *= 1.0 - mirrored;
     diffuse *= 1.0 - mirrored;
     if (kAmbient) ambient += mirrored * mirroredLight(reflect(-v, n), n, near, in_normal.w);
   }
-  float k_s = highlightStrength(draw.surface.z), specular = 0.0;
+  float k_s = draw.surface.w * highlightStrength(glossWidth(kFoliage), draw.surface.z);
+  float specular = 0.0;
   if (kSpecular && kLeafHasMaps) {
     if (glossy) specular = risen * cookTorrance(n, l, v, roughness, draw.leaf_gloss.z);
     k_s = 1.0;
   } else if (kSpecular) {
-    specular = specularFactor(n, l, v, draw.surface.w);
+    specular = specularFactor(n, l, v, highlightExponent(kFoliage));
   }
   vec3 visibility = vec3(1.0);
   if (kShadow && (diffuse != vec3(0.0) || specular > 0.0)) {

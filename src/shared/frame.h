@@ -37,12 +37,13 @@ SHARED_SIZE(FrameUniforms, 832);
 struct DrawUniforms {
   vec4 color;  ///< linear RGB; w = alpha, both multiply the texture
   vec4 matt;   ///< colour without textures: the material's mean; w = optical thickness, 0 = unknown
-  vec4 surface;  ///< alpha cutoff of the texture, normal map's scale, width of the gloss, exponent
+  vec4 surface;  ///< alpha cutoff of the texture, normal map's scale; of its gloss what facets
+                 ///< reflect squarely, and the strength of all
   vec4 leaf;     ///< leafTint() of the plant's foliage; w = leafOpticalDepth()
   vec4
       leaf_light;  ///< of LeafTextures: scale and offset of the front's coefficients, of the back's
-  vec4 leaf_gloss;  ///< roughness of the front, of the back, refractive index; w = slope of its
-                    ///< bumps
+  vec4 leaf_gloss;    ///< roughness of the front, of the back, refractive index; w = slope of its
+                      ///< bumps
   vec4 transmission;  ///< DiffuseTransmission: colour; w = factor
 };
 SHARED_SIZE(DrawUniforms, 112);

@@ -27,10 +27,9 @@ Plant leafPlant(const LeafSet& set, const LeafTranslucency& light,
 /// The same leaf with both its surfaces as they are in space, for rays: mesh 0 is the front and
 /// mesh 1 the back, each moved off the sheet by its relief, a vertex in each texel's middle, row by
 /// row, with the sheet's normals and that side's albedo and normal map. Between four vertices are
-/// two triangles, and the edge between them runs up to the right. Open at the outline; Plant::leaves
-/// stays empty. Of the
-/// options, `segments` plays no part. Throws Error as leafPlant() does, and for a set of one row or
-/// column.
+/// two triangles, and the edge between them runs up to the right. Open at the outline;
+/// Plant::leaves stays empty. Of the options, `segments` plays no part. Throws Error as leafPlant()
+/// does, and for a set of one row or column.
 Plant leafReliefPlant(const LeafSet& set, const LeafPlantOptions& options = {});
 
 }  // namespace verdure

@@ -165,16 +165,11 @@ void main() {
     if (kDiffuse) diffuse += k_t * (kLeafHasMaps ? max(dot(through, l), 0.0)
                                                  : diffuseFactor(-n, l));
   }
-<<<<<<< HEAD
   float roughness = front ? draw.leaf_gloss.x : draw.leaf_gloss.y;
   bool glossy = !kLeafHasMaps || roughness > 0.0;
   if (kGloss && glossy) {
-    float mirrored = glossReflected(draw.surface.z, max(dot(n, v), 0.0));
-=======
-  if (kGloss) {
     float mirrored = draw.surface.w * glossReflected(glossWidth(kFoliage), draw.surface.z,
                                                      max(dot(n, v), 0.0));
->>>>>>> leaf-light
     ambient *= 1.0 - mirrored;
     diffuse *= 1.0 - mirrored;
     if (kAmbient) ambient += mirrored * mirroredLight(reflect(-v, n), n, near, in_normal.w);

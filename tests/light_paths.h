@@ -5,7 +5,6 @@
 
 #include "bake/ray_directions.h"
 #include "bake/ray_starts.h"
-#include "shared/leaf.h"
 #include "verdure/occlusion.h"
 
 /// Light by brute force: whole paths from a vertex, one surface after the other.
@@ -33,7 +32,7 @@ void followPaths(const RayScene& scene, const RayStarts& starts, VertexId id,
       glm::vec3 side = front ? hit->normal : -hit->normal;
       // A coin decides between the sides of a leaf.
       const bool reflected = !hit->foliage || random.uniform() < 0.5f;
-      throughput *= reflected ? hit->reflectance : shared::leafTransmittance(hit->reflectance);
+      throughput *= reflected ? hit->reflectance : hit->transmittance;
       if (hit->foliage) throughput *= 2.0f;
       if (!reflected) side = -side;
       ray.origin = scene.originOff(hit->position, side);

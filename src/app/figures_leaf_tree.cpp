@@ -71,8 +71,8 @@ void drawCarriers(FigureSet& figures, const LeafSubject& subject) {
     scene.ground = false;
     figures.show(scene, -25.0f, 0.0f);
     lightLeaf(figures, glm::half_pi<float>(), false);
-    figures.view().daylight.sun.direction = directionOf(glm::radians(35.0f), glm::radians(6.0f));
-    figures.view().exposure.ev = 14.0f;
+    figures.view().daylight.sun.direction = directionOf(glm::radians(43.0f), glm::radians(10.0f));
+    figures.view().exposure.ev = 14.5f;
     figures.draw(fmt::format("figure3-8-{}", name), leafTerms(LeafModel::kMaps),
                  fmt::format("{}: {} triangles", caption, plant.meshes[0].triangleCount()));
   }

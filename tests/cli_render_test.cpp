@@ -1,4 +1,6 @@
 // render and figures as their user meets them.
+#include <fstream>
+
 #include "command_line.h"
 #include "verdure/image.h"
 
@@ -68,10 +70,25 @@ TEST_F(CommandLineRender, TheBestLightUsesWhatTheFileHas) {
   EXPECT_EQ(traced_report["light"], "best (transfer vectors)");
   const Image transfer = picture(path("traced.glb"), {"--light", "transfer"}, &transfer_report);
   EXPECT_EQ(transfer_report["light"], "transfer");
-  // The shadows alone make the difference between these two.
-  EXPECT_EQ(difference(transfer, picture(path("traced.glb"), {"--shadows", "map"})), 0.0);
-  EXPECT_GT(difference(transfer, best), 0.0);
-  EXPECT_GT(difference(baked, best), difference(transfer, best));
+  // The shadows make a difference, and so do the leaves' own maps.
+  const Image plain_shadows = picture(path("traced.glb"), {"--shadows", "map"});
+  EXPECT_GT(difference(plain_shadows, best), 0.0);
+  EXPECT_GT(difference(plain_shadows, transfer), 0.0);
+  EXPECT_GT(difference(baked, best), difference(plain_shadows, best));
+}
+
+TEST_F(CommandLineRender, WithoutLeafMapsTheBestLightDiffersByItsShadowsAlone) {
+  const std::string tree = smallTree("tree.gltf", 3);
+  Json file = Json::parse(std::ifstream(tree));
+  std::size_t stripped = 0;
+  for (Json& material : file["materials"])
+    if (material.contains("extras")) stripped += material["extras"].erase("verdure");
+  EXPECT_EQ(stripped, 1u);
+  std::ofstream(tree) << file;
+  runWell({"bake", tree, "-o", path("traced.gltf"), "--transfer", "3", "--rays", "16"});
+  const Image transfer = picture(path("traced.gltf"), {"--light", "transfer"});
+  EXPECT_EQ(difference(transfer, picture(path("traced.gltf"), {"--shadows", "map"})), 0.0);
+  EXPECT_GT(difference(transfer, picture(path("traced.gltf"), {})), 0.0);
 }
 
 TEST_F(CommandLineRender, ShadowsFromEachSource) {

@@ -107,9 +107,8 @@ std::uint32_t fixedPoint(double textures) {
 /// A slope whose multiples stay `apart` from whole numbers up to the `count`-th: the thesis, too,
 /// rejects what is near a simple fraction.
 double driftingSlope(Random& random, double apart, int count) {
-  const double least = std::max(0.02, apart);
   for (;;) {
-    const double slope = least * (1.0 + 2.0 * random.uniform());
+    const double slope = apart * random.uniform(3.0f, 9.0f);  // blurs by 1 to 3 cycles a width
     bool good = true;
     for (int n = 1; n <= count && good; ++n)
       good = std::abs(n * slope - std::round(n * slope)) >= apart;

@@ -81,8 +81,9 @@ MotionTexture makeWindTexture(double smallest_wavelength, int size = 512, int ch
 /// and through `slope` heights in each, such that speed * slope is in [0, 1). Throws Error.
 shared::MotionTrajectory makeTrajectory(const glm::dvec2& offset, double slope, double speed);
 
-/// The trajectory of a branch whose resonance is `frequency_hz`. Its slope is such that after any
-/// number of widths up to height / 23 it is at a row of its own, so that its motion does not repeat
+/// The trajectory of a branch whose resonance is `frequency_hz`. Its slope is 20 to 61 / height
+/// (0.02 to 0.06 by default), such that after any number of widths up to height / 23 it is at a row
+/// of its own, so that its motion does not repeat
 /// within 0.0027 width * height / frequency_hz seconds. Throws Error unless the texture is one of
 /// branches, and the branch crosses it slower than once a second.
 shared::MotionTrajectory makeTrajectory(const MotionTexture& texture, double frequency_hz,

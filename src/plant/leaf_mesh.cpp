@@ -17,7 +17,7 @@ struct Pattern {
 };
 
 /// Where the points of a leaf, from its foot in cell heights, are on the texture.
-struct Cell {
+struct LeafCell {
   const LeafAtlas& atlas;
   std::size_t variant;
 
@@ -47,7 +47,7 @@ Arc onMidrib(float y, float curl) {
 
 /// A blade: a hull around the leaf, a fan of triangles about a point of its axis. The two halves
 /// are folded up along the axis, which is curved.
-Pattern bladePattern(const Cell& cell, const BladeForm& form, float stretch) {
+Pattern bladePattern(const LeafCell& cell, const BladeForm& form, float stretch) {
   const LeafHull hull =
       leafHull(cell.atlas.variants[cell.variant].points, cell.reachLeft(), cell.reachRight());
   const float fold = form.fold_deg * 3.14159265f / 180;
@@ -78,7 +78,7 @@ Pattern bladePattern(const Cell& cell, const BladeForm& form, float stretch) {
 /// How far a leaf reaches to both sides of its foot, and up, in cell heights.
 struct Box {
   float left = 0, right = 0, top = 0;
-  explicit Box(const Cell& cell) {
+  explicit Box(const LeafCell& cell) {
     for (const glm::vec2& p : cell.atlas.variants[cell.variant].points) {
       left = std::min(left, p.x);
       right = std::max(right, p.x);
@@ -91,7 +91,7 @@ struct Box {
 };
 
 /// One quad.
-Pattern cardPattern(const Cell& cell, float stretch) {
+Pattern cardPattern(const LeafCell& cell, float stretch) {
   Pattern p;
   const Box box(cell);
   for (const glm::vec2 c :
@@ -104,7 +104,7 @@ Pattern cardPattern(const Cell& cell, float stretch) {
 }
 
 /// A shoot with needles: three half planes, 120 degrees apart, that share the shoot as an edge.
-Pattern needlePattern(const Cell& cell, float stretch) {
+Pattern needlePattern(const LeafCell& cell, float stretch) {
   Pattern p;
   const Box box(cell);
   p.uv = {cell.uv({0, 0}), cell.uv({0, box.top})};
@@ -135,7 +135,7 @@ Mesh meshLeaves(const Skeleton& skeleton, const LeafAtlas& atlas, const BladeFor
       places.empty() ? 1.0f : places[0].width / places[0].length / atlas.natural_width;
   std::vector<Pattern> patterns;
   for (std::size_t k = 0; k < kLeafVariants; ++k) {
-    const Cell cell{atlas, k};
+    const LeafCell cell{atlas, k};
     patterns.push_back(card      ? cardPattern(cell, stretch)
                        : needles ? needlePattern(cell, stretch)
                                  : bladePattern(cell, form, stretch));

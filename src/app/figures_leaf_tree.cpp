@@ -21,21 +21,14 @@ void flatten(Plant& plant, int texture) {
   }
 }
 
-/// The leaf's front as geometry, a vertex for every second texel.
+/// The leaf's front as geometry, without a normal map.
 Plant reliefPlant(const LeafSet& set, const LeafTranslucency& light) {
-  LeafPlantOptions sheet;
-  sheet.segments = std::min(set.width / 2, 1024);
-  Plant plant = leafPlant(set, light, sheet);
-  Mesh& mesh = plant.meshes[0];
-  const glm::vec2 last(set.width - 1, set.height - 1);
-  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    const glm::vec2 texel =
-        glm::clamp(mesh.uvs[v] * glm::vec2(set.width, set.height), glm::vec2(0.0f), last);
-    const std::size_t i = static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(set.width) +
-                          static_cast<std::size_t>(texel.x);
-    mesh.positions[v].z += 1e-3f * set.front.relief_mm[i];
-    mesh.normals[v] = set.front.normal[i];
-  }
+  Plant plant;
+  plant.name = set.name;
+  Mesh mesh = leafReliefPlant(set).meshes[0];  // a vertex for each texel
+  mesh.normals = set.front.normal;
+  mesh.material = addLeafMaterial(plant, set, light);
+  plant.meshes.push_back(std::move(mesh));
   flatten(plant, plant.materials[0].normal_texture);
   return plant;
 }

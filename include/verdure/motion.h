@@ -37,7 +37,6 @@ struct VertexMotion {
 struct MotionTree {
   std::vector<MotionBranch> branches;
   std::vector<std::vector<VertexMotion>> meshes;  ///< of each mesh of the plant, vertex by vertex
-  std::vector<std::uint32_t> motion_of_branch;    ///< of each of Plant::branches
 };
 
 /// The tree of beams of a plant whose branches are known (Plant::branches, branch_of_vertex and

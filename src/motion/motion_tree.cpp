@@ -124,7 +124,6 @@ MotionTree motionTree(const Plant& plant) {
     const float wood = volumeOf(plant.branches[b]);
     for (std::uint32_t beam = hung[b].beam; beam != kNone; beam = tree.branches[beam].parent)
       tree.branches[beam].wood_m3 += wood;
-    tree.motion_of_branch.push_back(hung[b].beam);
   }
 
   for (const Mesh& mesh : plant.meshes) {

@@ -412,7 +412,7 @@ TEST_F(Render, IsTheSameEachTimeAndFarFromTheOrigin) {
   neighbour.origin = tree.origin + glm::dvec3(3.0, 0.0, 0.0);
   scene.items.push_back({&neighbour, nullptr});
   const PackedScene packed = packScene(scene);
-  EXPECT_EQ(packed.instances[1][0], glm::vec4(1, 0, 0, 3));
+  EXPECT_EQ(packed.instances[1].rows[0], glm::vec4(1, 0, 0, 3));
 }
 
 TEST_F(Render, MatchesTheReferencePictures) {

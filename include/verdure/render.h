@@ -112,10 +112,20 @@ struct View {
   int shadow_cascades = 0;
   /// Linear display RGB in [0, 1] instead of the sky and the sun's disk; not exposed.
   std::optional<glm::vec3> background;
-  bool hdr = false;  ///< Frame::hdr is wanted, too
+  bool hdr = false;      ///< Frame::hdr is wanted, too
+  Wind wind;             ///< over items that have a motion
+  double seconds = 0.0;  ///< any finite time: pictures depend on it alone, not on earlier ones
+  /// The frame before, at its own wind: Frame::motion is wanted, too.
+  struct Moment {
+    Camera camera;
+    Wind wind;
+    double seconds = 0.0;
+  };
+  std::optional<Moment> last = {};
 };
 
 struct FrameTimes {
+  double motion_ms = 0;  ///< GPU; branches and leaves in wind
   double pack_ms = 0;    ///< packing and upload, CPU
   double shadow_ms = 0;  ///< GPU; with the light from transfer vectors, when it changed
   double color_ms = 0;   ///< GPU
@@ -127,6 +137,10 @@ struct Frame {
   /// kcd/m^2, unexposed and without bloom: the plain average over each pixel. Halves (11 bits) of a
   /// range that the daylight sets. Background is black. Empty unless View::hdr.
   HdrImage hdr;
+  /// How far what is seen at each pixel's centre has come since View::last, in pixels, x right and
+  /// y down, rows first: for temporal filters. The ground and the sky stand still. Empty without
+  /// it.
+  std::vector<glm::vec2> motion;
   float average_luminance =
       0.0f;                 ///< kcd/m^2: log-average of the picture, or what the EV stands for
   float white = 0.0f;       ///< white point of the picture, in scaled luminance

@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "verdure/motion.h"
 #include "verdure/plant.h"
 #include "verdure/transfer.h"
 
@@ -29,6 +30,7 @@ struct SceneItem {
   const PlantTransfer* transfer = nullptr;  ///< may be null; of plants that stand unturned
   /// False: the camera sees what is behind it; its shadow and the light off it stay.
   bool seen = true;
+  const PlantMotion* motion = nullptr;  ///< may be null: it stands still in any wind
 };
 
 /// Coordinates are relative to the origin of the first item's plant; a plant with another origin

@@ -28,6 +28,8 @@ UseInfo useInfo(Use use) {
     case Use::kVertexInput:
       return {Stage::eVertexInput, Access::eVertexAttributeRead | Access::eIndexRead,
               Layout::eUndefined};
+    case Use::kVertexStorage:
+      return {Stage::eVertexShader, Access::eShaderStorageRead, Layout::eUndefined};
     case Use::kComputeStorage:
       return {Stage::eComputeShader, Access::eShaderStorageRead | Access::eShaderStorageWrite,
               Layout::eUndefined};

@@ -16,6 +16,7 @@ enum class Use {
   kFragmentSampled,  ///< sampled in a fragment shader
   kComputeSampled,   ///< sampled in a compute shader
   kVertexInput,      ///< vertex and index buffer
+  kVertexStorage,    ///< storage buffer that a vertex shader reads
   kComputeStorage,   ///< storage buffer of a compute shader, read and written
   kFragmentStorage,  ///< storage buffer that a fragment shader reads
   kHostRead,         ///< read on the CPU after a fence

@@ -21,11 +21,11 @@ struct MotionTables {
   std::vector<shared::MotionBeam> beams;
   std::vector<shared::MotionDrive> drives;  ///< of each beam
   std::vector<shared::MotionLeaf> leaves;
-  std::vector<std::vector<glm::uvec2>> hangs;   ///< of each vertex of each mesh
-  std::vector<std::uint32_t> texels;            ///< of all levels, see MotionDrive::texels
-  std::array<float, kMotionLevels> farthest{};  ///< by level, of its texture
-  PackedMotionTexture wind;                     ///< for leaves
-  float wind_extent = 1.0f;                     ///< of that, m
+  std::vector<std::vector<glm::uvec2>> hangs;  ///< of each vertex of each mesh
+  std::vector<std::uint32_t> texels;           ///< of all levels, see MotionDrive::texels
+  std::vector<float> farthest;  ///< of each beam, the length of its texture's longest texel
+  PackedMotionTexture wind;     ///< for leaves
+  float wind_extent = 1.0f;     ///< of that, m
 
   /// What hangs on a beam itself, at rest; boxes are empty where nothing does.
   struct Load {
@@ -48,6 +48,9 @@ glm::uvec2 motionPhase(std::uint32_t instance);
 
 /// Bilinear, as the shaders read it.
 glm::vec2 readMotion(const std::uint32_t* texels, const glm::uvec2& size, const glm::vec2& uv);
+
+/// See movedBounds() in verdure/motion.h.
+Bounds movedBounds(const MotionTables& tables, const Wind& wind);
 
 /// Calls visit(branch, place) for a vertex's branch and for those that carry it, down to the trunk.
 template <class Visit>

@@ -20,7 +20,7 @@ Most mostAt(const shared::MotionBeam& beam, float place, float bent) {
     slope = std::max(slope, std::abs(shared::beamSlope(fit, place * float(i) / 8.0f)));
   const float aside = bent * shared::beamDeflection(fit, place);
   const float shorter = place - shared::beamFoot(fit, place, bent);
-  return {1.02f * beam.length * std::hypot(aside, shorter), 1.01f * std::atan(bent * slope)};
+  return {1.02f * beam.span * std::hypot(aside, shorter), 1.01f * std::atan(bent * slope)};
 }
 
 void include(const Bounds& box, float margin, Bounds& all, bool& any) {
@@ -33,15 +33,17 @@ void include(const Bounds& box, float margin, Bounds& all, bool& any) {
 }  // namespace
 
 Bounds movedBounds(const PlantMotion& motion, const Wind& wind) {
+  return movedBounds(*motion.tables, wind);
+}
+
+Bounds movedBounds(const MotionTables& tables, const Wind& wind) {
   checkWind(wind);
-  const MotionTables& tables = *motion.tables;
   const float speed = wind.speed * (1.0f + wind.gusts), push = speed * speed;
   std::vector<float> bent;  // in lengths, of each beam at most
   for (std::size_t b = 0; b < tables.beams.size(); ++b) {
     const shared::MotionBeam& beam = tables.beams[b];
     const shared::MotionDrive& drive = tables.drives[b];
-    const auto level = static_cast<std::size_t>(motion.tree.branches[b].level);
-    const float tip = push * (drive.swing * tables.farthest[level] + drive.mean);
+    const float tip = push * (drive.swing * tables.farthest[b] + drive.mean);
     bent.push_back(tip / std::sqrt(1.0f + tip * tip / (shared::kMostTip * shared::kMostTip)) /
                    (beam.c2 + beam.c4));
   }

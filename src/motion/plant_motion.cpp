@@ -167,6 +167,7 @@ class TableBuilder {
 
   void addDrives(bool leafless) {
     out_.drives.resize(motion_.tree.branches.size());
+    out_.farthest.resize(motion_.tree.branches.size());
     for (int level = 0; level < kMotionLevels; ++level) {
       const auto l = static_cast<std::size_t>(level);
       std::vector<std::uint32_t> members;
@@ -185,9 +186,9 @@ class TableBuilder {
       const auto first = static_cast<std::uint32_t>(out_.texels.size());
       const PackedMotionTexture halves = packed(texture);
       out_.texels.insert(out_.texels.end(), halves.texels.begin(), halves.texels.end());
-      out_.farthest[l] = halves.farthest;
       for (const std::uint32_t b : members) {
         const BranchMotion& motion = motion_.branches[b];
+        out_.farthest[b] = halves.farthest;
         out_.drives[b] = {
             makeTrajectory(texture, double{motion.frequency_hz}, hash(options_.seed + 1) + b),
             first, halves.size.x | halves.size.y << 16, motion.mean, motion.swing};

@@ -58,23 +58,25 @@ std::vector<glm::vec2> transferWeights(const FrameLight& light, float angular_ra
 
 }  // namespace
 
-FrameLayout::FrameLayout(const gpu::Device& device)
+FrameLayout::FrameLayout(const gpu::Device& device, vk::DescriptorSetLayout motion_set)
     : frame_set(makeFrameSet(device)),
       material_set(makeMaterialSet(device)),
-      pipeline(gpu::makePipelineLayout(device, std::array{*frame_set.layout, *material_set},
+      pipeline(gpu::makePipelineLayout(device,
+                                       std::array{*frame_set.layout, *material_set, motion_set},
                                        vk::ShaderStageFlagBits::eFragment,
                                        sizeof(shared::DrawUniforms), sizeof(std::uint32_t))) {}
 
 FrameDrawer::FrameDrawer(const gpu::Device& device)
     : device_(&device),
-      layout_(device),
+      motion_pass_(device),
+      layout_(device, *motion_pass_.layouts().vertex.layout),
       transfer_pass_(device),
-      shadow_pass_(device, layout_),
+      shadow_pass_(),
       blocker_pass_(device),
       exposure_pass_(device),
       bloom_pass_(device),
       tone_pass_(device),
-      timers_(device, 4),
+      timers_(device, 5),
       frame_set_(device, layout_.frame_set),
       sky_image_(device),
       ground_light_(device) {
@@ -147,6 +149,10 @@ void FrameDrawer::checkView(const View& view) const {
   demand(view.bloom >= 0.0f && view.bloom <= 1.0f, "bloom", "choose 0 to 1");
   demand(view.visibility_exponent > 0.0f && std::isfinite(view.visibility_exponent),
          "visibility_exponent", "choose a number above 0");
+  demand(std::isfinite(view.seconds) && (!view.last || std::isfinite(view.last->seconds)),
+         "seconds", "give a finite time");
+  checkWind(view.wind);
+  if (view.last) checkWind(view.last->wind);
   const glm::vec3& sun = view.daylight.sun.direction;
   demand(std::abs(glm::length(sun) - 1.0f) < 1e-3f, "the direction of the sun",
          "make it a unit vector");
@@ -230,6 +236,7 @@ shared::FrameUniforms FrameDrawer::makeUniforms(const GpuScene& scene, const Vie
   const float aspect = static_cast<float>(view.width) / static_cast<float>(view.height);
   const CameraRays rays = cameraRays(view.camera, aspect);
   u.clip_from_world = clipFromWorld(view.camera, aspect);
+  u.last_clip_from_world = view.last ? clipFromWorld(view.last->camera, aspect) : u.clip_from_world;
   u.eye = glm::vec4(rays.eye, units);
   u.ray_right = glm::vec4(rays.right, 2.0f / static_cast<float>(view.width));
   u.ray_down = glm::vec4(rays.down, 2.0f / static_cast<float>(view.height));
@@ -317,6 +324,7 @@ void FrameDrawer::recordTone(const vk::raii::CommandBuffer& commands, const View
 Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
   checkView(view);
   resize(view);
+  scene.setWind(view.wind, view.last ? std::optional(view.last->wind) : std::nullopt);
   const FrameLight light = makeFrameLight(view, skyOf(view), scene.ground());
   sky_image_.look(view.daylight.sky);
   const float units = frameUnits(std::max(light.brightest, sky_image_.brightest()));
@@ -331,6 +339,8 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
   std::memcpy(uniforms_.memory.mapped(), &uniforms, sizeof(uniforms));
   const DrawKind kind = kindOf(view);
   const bool depth_maps = view.terms.shadow_source != ShadowSource::kShadowMap;
+  if (view.last) velocity_pass_.prepare(*device_, layout_, scene, view.width, view.height);
+  if (!depth_maps) shadow_pass_.prepare(*device_, layout_, scene);
   if (depth_maps) light_depth_pass_.prepare(*device_, layout_, scene, view.terms);
   plant_pass_.prepare(*device_, layout_, scene, view.terms);
   backdrop_pass_.prepare(*device_, layout_, view.terms, kind, scene.ground());
@@ -338,6 +348,10 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
   device_->submit([&](const vk::raii::CommandBuffer& commands) {
     timers_.reset(commands);
     timers_.stamp(commands, 0);
+    motion_pass_.record(commands, scene.motion(), view.wind, view.seconds, false);
+    if (view.last)
+      motion_pass_.record(commands, scene.motion(), view.last->wind, view.last->seconds, true);
+    timers_.stamp(commands, 1);
     sky_image_.record(commands);
     ground_light_.record(commands);
     if (!weights.empty()) transfer_pass_.record(commands, scene.transfer(), std::move(weights));
@@ -352,16 +366,21 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
                         gpu::Use::kFragmentSampled);
     }
     blocker_pass_.record(commands, depth_maps ? cascade_count : 0);
-    timers_.stamp(commands, 1);
-    recordColor(commands, scene, view, kind);
     timers_.stamp(commands, 2);
-    recordTone(commands, view, units);
+    recordColor(commands, scene, view, kind);
     timers_.stamp(commands, 3);
+    recordTone(commands, view, units);
+    timers_.stamp(commands, 4);
+    if (view.last) velocity_pass_.record(commands, layout_, *frame_set_, scene);
     targets_->recordReadback(commands, view.hdr);
   });
   Frame frame;
   frame.image = targets_->readPicture();
   if (view.hdr) frame.hdr = targets_->readHdr(units);
+  if (view.last)
+    frame.motion =
+        velocity_pass_.read(view.camera, view.last->camera,
+                            scene.ground() ? std::optional(scene.groundHeight()) : std::nullopt);
   const ExposurePass::Measured measured = exposure_pass_.measured();
   frame.average_luminance =
       view.exposure.ev ? shared::meteredLuminance(*view.exposure.ev) : measured.average / units;
@@ -370,9 +389,10 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
   frame.white =
       view.exposure.white.value_or(shared::automaticWhite(measured.bright / units * exposure));
   frame.shadow_cascades = static_cast<int>(cascades.size());
-  frame.times.shadow_ms = timers_.milliseconds(0, 1);
-  frame.times.color_ms = timers_.milliseconds(1, 2);
-  frame.times.tone_ms = timers_.milliseconds(2, 3);
+  frame.times.motion_ms = timers_.milliseconds(0, 1);
+  frame.times.shadow_ms = timers_.milliseconds(1, 2);
+  frame.times.color_ms = timers_.milliseconds(2, 3);
+  frame.times.tone_ms = timers_.milliseconds(3, 4);
   return frame;
 }
 

@@ -13,12 +13,14 @@
 #include "render/frame_light.h"
 #include "render/ground_light.h"
 #include "render/light_depth_pass.h"
+#include "render/motion_pass.h"
 #include "render/plant_pass.h"
 #include "render/shadow_pass.h"
 #include "render/sky_image.h"
 #include "render/targets.h"
 #include "render/tone_pass.h"
 #include "render/transfer_pass.h"
+#include "render/velocity_pass.h"
 
 namespace verdure {
 
@@ -27,6 +29,7 @@ class FrameDrawer {
  public:
   explicit FrameDrawer(const gpu::Device& device);
   const FrameLayout& layout() const { return layout_; }
+  const MotionLayouts& motionLayouts() const { return motion_pass_.layouts(); }
   const gpu::SetLayout& transferLayout() const { return transfer_pass_.setLayout(); }
   /// The next frame shows another scene.
   void forgetScene() { ++scene_id_; }
@@ -54,12 +57,14 @@ class FrameDrawer {
   void recordTone(const vk::raii::CommandBuffer& commands, const View& view, float units) const;
 
   const gpu::Device* device_;
+  MotionPass motion_pass_;
   FrameLayout layout_;
   TransferPass transfer_pass_;
   ShadowPass shadow_pass_;
   LightDepthPass light_depth_pass_;
   BlockerPass blocker_pass_;
   PlantPass plant_pass_;
+  VelocityPass velocity_pass_;
   BackdropPass backdrop_pass_;
   ExposurePass exposure_pass_;
   BloomPass bloom_pass_;

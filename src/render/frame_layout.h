@@ -16,11 +16,11 @@ struct FrameLayout {
   static constexpr vk::Format kFoliageDepth = vk::Format::eR16G16B16A16Sfloat;
   static constexpr vk::SampleCountFlagBits kSamples = vk::SampleCountFlagBits::e4;
 
-  explicit FrameLayout(const gpu::Device& device);
+  FrameLayout(const gpu::Device& device, vk::DescriptorSetLayout motion_set);
 
   gpu::SetLayout frame_set;                    ///< as in src/shaders/frame_set.glsl
   vk::raii::DescriptorSetLayout material_set;  ///< as in src/shaders/plant_pass.frag
-  vk::raii::PipelineLayout pipeline;           ///< both sets and DrawUniforms
+  vk::raii::PipelineLayout pipeline;           ///< both, what moves plants, and DrawUniforms
 };
 
 }  // namespace verdure

@@ -5,10 +5,14 @@
 namespace verdure {
 
 GpuScene::GpuScene(const gpu::Device& device, const PackedScene& packed,
-                   vk::DescriptorSetLayout material_layout, const gpu::SetLayout& transfer_layout)
+                   vk::DescriptorSetLayout material_layout, const gpu::SetLayout& transfer_layout,
+                   const MotionLayouts& motion_layouts)
     : has_crown_normals_(!packed.crown_normals.empty()),
+      moving_items_(packed.motions.items),
+      places_(packed.instances),
       draws_(packed.draws),
       grounds_(packed.grounds),
+      rest_bounds_(packed.bounds),
       bounds_(packed.bounds),
       ground_(packed.ground),
       ground_height_(packed.ground_height),
@@ -22,9 +26,15 @@ GpuScene::GpuScene(const gpu::Device& device, const PackedScene& packed,
   leaf_normals_ = vertices(packed.leaf_normals);
   crown_normals_ = vertices(packed.crown_normals);
   uvs_ = vertices(packed.uvs);
-  instances_ = vertices(packed.instances);
+  instances_ =
+      upload.buffer(std::span(packed.instances), Usage::eVertexBuffer | Usage::eStorageBuffer);
   indices_ = upload.buffer(std::span(packed.indices), Usage::eIndexBuffer);
   transfer_.emplace(device, upload, packed.transfers, packed.positions.size(), transfer_layout);
+  motion_.emplace(device, upload, packed.motions, instances_, motion_layouts);
+  for (Draw& draw : draws_) {
+    can_move_.push_back(draw.moving);
+    draw.moving = false;
+  }
   for (std::size_t i = 0; i < packed.textures.size(); ++i)
     textures_.push_back(upload.texture(packed.textures[i].levels, packed.texture_is_linear[i]
                                                                       ? vk::Format::eR8G8B8A8Unorm
@@ -95,6 +105,31 @@ GpuScene::GpuScene(const gpu::Device& device, const PackedScene& packed,
   }
 }
 
+void GpuScene::setWind(const Wind& wind, const std::optional<Wind>& last) {
+  Wind strongest = wind;
+  if (last) {
+    strongest.speed = std::max(wind.speed, last->speed);
+    strongest.gusts = std::max(wind.gusts, last->gusts);
+  }
+  const bool blows = strongest.speed > 0.0f && !moving_items_.empty();
+  for (std::size_t i = 0; i < draws_.size(); ++i) draws_[i].moving = blows && can_move_[i];
+  if (!blows) {
+    bounds_ = rest_bounds_;
+    bounds_wind_.reset();
+    return;
+  }
+  if (bounds_wind_ && bounds_wind_->speed == strongest.speed &&
+      bounds_wind_->gusts == strongest.gusts)
+    return;
+  bounds_wind_ = strongest;
+  bounds_ = rest_bounds_;
+  for (const PackedMotion& item : moving_items_) {
+    const Bounds box = movedBounds(*item.tables, strongest);
+    for (std::uint32_t k = 0; k < item.instances; ++k)
+      growBounds(box, places_[item.first_instance + k], bounds_);
+  }
+}
+
 void GpuScene::bindVertices(const vk::raii::CommandBuffer& commands, NormalSource normals) const {
   const bool crown = normals == NormalSource::kCrown && has_crown_normals_;
   const gpu::Buffer& normal_stream = crown ? crown_normals_ : leaf_normals_;
@@ -108,7 +143,8 @@ void GpuScene::bindVertices(const vk::raii::CommandBuffer& commands, NormalSourc
 void GpuScene::record(const vk::raii::CommandBuffer& commands, vk::PipelineLayout layout,
                       vk::DescriptorSet frame_set, const Draw& draw) const {
   commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, layout, 0,
-                              {frame_set, *material_sets_[draw.material]}, nullptr);
+                              {frame_set, *material_sets_[draw.material], motion_->vertexSet()},
+                              nullptr);
   commands.pushConstants<shared::DrawUniforms>(layout, vk::ShaderStageFlagBits::eFragment, 0,
                                                draw.uniforms);
   commands.drawIndexed(draw.index_count, draw.instance_count, draw.first_index, draw.vertex_offset,
@@ -133,13 +169,14 @@ std::vector<vk::VertexInputAttributeDescription> GpuScene::attributes() {
           {.location = 4, .binding = 3, .format = Format::eR32G32B32A32Sfloat, .offset = 16},
           {.location = 5, .binding = 3, .format = Format::eR32G32B32A32Sfloat, .offset = 32},
           {.location = 6, .binding = 4, .format = Format::eR16G16B16A16Sfloat, .offset = 0},
-          {.location = 7, .binding = 4, .format = Format::eR16G16B16A16Sfloat, .offset = 8}};
+          {.location = 7, .binding = 4, .format = Format::eR16G16B16A16Sfloat, .offset = 8},
+          {.location = 8, .binding = 3, .format = Format::eR32G32B32A32Uint, .offset = 48}};
 }
 
 std::vector<vk::VertexInputAttributeDescription> GpuScene::shapeAttributes() {
   std::vector<vk::VertexInputAttributeDescription> shape = attributes();
   std::erase_if(shape, [](const auto& attribute) {
-    return attribute.location == 1 || attribute.location > 5;
+    return attribute.location == 1 || attribute.location == 6 || attribute.location == 7;
   });
   return shape;
 }

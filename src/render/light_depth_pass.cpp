@@ -18,7 +18,8 @@ gpu::Constants constantsOf(const Draw& draw, const Terms& terms) {
                        {.alpha_test = draw.alpha_test,
                         .foliage = draw.foliage,
                         .leaf = draw.leaf_maps ? LeafModel::kMaps : LeafModel::kColor,
-                        .stated_transmission = draw.stated_transmission});
+                        .stated_transmission = draw.stated_transmission,
+                        .moving = draw.moving});
 }
 
 }  // namespace

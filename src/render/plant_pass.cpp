@@ -28,7 +28,8 @@ gpu::Constants constantsOf(const Draw& draw, const Terms& terms) {
                         .scattering = draw.foliage && terms.scattering,
                         .thickness_map = draw.foliage && terms.scattering && draw.thickness_map,
                         .leaf = draw.leaf_maps && terms.textures ? terms.leaf : LeafModel::kColor,
-                        .stated_transmission = draw.stated_transmission && terms.textures});
+                        .stated_transmission = draw.stated_transmission && terms.textures,
+                        .moving = draw.moving});
 }
 
 /// Two vertex layouts: see GpuScene::bindings().

@@ -19,6 +19,8 @@ namespace {
 
 // A buffer of transfer vectors takes at most 64 MiB: half of what every device allows.
 constexpr std::size_t kTransferWords = std::size_t{1} << 24;
+/// As much for the motion of one kind of plant.
+constexpr std::size_t kMotionWords = std::size_t{1} << 24;
 
 /// Alpha as a grey picture.
 Image alphaOf(const Image& image) {
@@ -78,14 +80,20 @@ class Packer {
     const auto first_instance = static_cast<std::uint32_t>(out_.instances.size());
     for (const glm::mat4& instance : item.world_from_plant) {
       const glm::mat4 rows = glm::transpose(worldFromPlant(scene_, item, instance));
-      out_.instances.push_back({rows[0], rows[1], rows[2]});
+      out_.instances.push_back({{rows[0], rows[1], rows[2]}});
     }
+    if (item.motion != nullptr) packMotion(item, first_instance);
     const std::size_t first_draw = out_.draws.size();
     glm::dvec4 leaves(0.0);
     double leaf_indices = 0.0;
     for (std::size_t m = 0; m < plant.meshes.size(); ++m) {
       const MeshLight* light = item.light != nullptr ? &item.light->meshes[m] : nullptr;
       Draw draw = packMesh(plant, plant.meshes[m], light, any_baked);
+      draw.moving = item.motion != nullptr;
+      if (draw.moving)
+        out_.motions.addVertices(item.motion->tables->hangs[m]);
+      else
+        out_.motions.addStill(plant.meshes[m].positions.size());
       if (item.transfer != nullptr) {
         draw.transfer = true;
         packTransfer(item.transfer->meshes[m], item.transfer->bands, item.transfer->bounce_bands,
@@ -109,7 +117,22 @@ class Packer {
         out_.draws[d].uniforms.leaf =
             leaf_indices > 0.0 ? glm::vec4(leaves / leaf_indices) : glm::vec4(1.0f);
     leaf_tint_ += glm::dvec4(glm::dvec3(leaves), leaf_indices);
-    growBounds(bounds(plant), first_instance);
+    const Bounds box = bounds(plant);
+    for (std::size_t i = first_instance; i < out_.instances.size(); ++i)
+      growBounds(box, out_.instances[i], out_.bounds);
+  }
+
+  void packMotion(const SceneItem& item, std::uint32_t first_instance) {
+    const auto& hangs = item.motion->tables->hangs;
+    bool fits = hangs.size() == item.plant->meshes.size();
+    for (std::size_t m = 0; fits && m < hangs.size(); ++m)
+      fits = hangs[m].size() == item.plant->meshes[m].positions.size();
+    if (!fits)
+      throw Error(item.plant->name, "its motion belongs to another plant",
+                  "make one with plantMotion()");
+    const auto count = static_cast<std::uint32_t>(item.world_from_plant.size());
+    const auto seats = out_.motions.add(*item.motion, first_instance, count, kMotionWords);
+    for (std::uint32_t k = 0; k < count; ++k) out_.instances[first_instance + k].motion = seats[k];
   }
 
   /// Transfer vectors know the directions of the world: a plant that was turned has others.
@@ -137,19 +160,6 @@ class Packer {
                  static_cast<std::size_t>(ground.size) * static_cast<std::size_t>(ground.size), 0,
                  kTransferWords, item.plant->name + ", ground", unused);
     out_.grounds.push_back(std::move(packed));
-  }
-
-  void growBounds(const Bounds& box, std::uint32_t first_instance) {
-    for (std::size_t i = first_instance; i < out_.instances.size(); ++i)
-      for (int corner = 0; corner < 8; ++corner) {
-        const glm::vec4 p((corner & 1) != 0 ? box.max.x : box.min.x,
-                          (corner & 2) != 0 ? box.max.y : box.min.y,
-                          (corner & 4) != 0 ? box.max.z : box.min.z, 1.0f);
-        const PackedInstance& rows = out_.instances[i];
-        const glm::vec3 q(glm::dot(rows[0], p), glm::dot(rows[1], p), glm::dot(rows[2], p));
-        out_.bounds.min = glm::min(out_.bounds.min, q);
-        out_.bounds.max = glm::max(out_.bounds.max, q);
-      }
   }
 
   Draw packMesh(const Plant& plant, const Mesh& mesh, const MeshLight* light, bool any_baked) {
@@ -359,6 +369,18 @@ PackedNormal packNormal(const glm::vec3& unit_normal, float ambient, const glm::
   };
   return {component(n.x), component(n.y), component(n.z),
           static_cast<std::int16_t>(shared::packVisibility(visibility))};
+}
+
+void growBounds(const Bounds& box, const PackedInstance& place, Bounds& all) {
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::vec4 p((corner & 1) != 0 ? box.max.x : box.min.x,
+                      (corner & 2) != 0 ? box.max.y : box.min.y,
+                      (corner & 4) != 0 ? box.max.z : box.min.z, 1.0f);
+    const glm::vec3 q(glm::dot(place.rows[0], p), glm::dot(place.rows[1], p),
+                      glm::dot(place.rows[2], p));
+    all.min = glm::min(all.min, q);
+    all.max = glm::max(all.max, q);
+  }
 }
 
 PackedScene packScene(const Scene& scene) {

@@ -7,6 +7,8 @@
 
 #include "gpu/resources.h"
 #include "render/mipmaps.h"
+#include "render/motion_pass.h"
+#include "render/packed_motion.h"
 #include "render/packed_transfer.h"
 #include "render/terms.h"
 #include "render/transfer_pass.h"
@@ -22,8 +24,11 @@ using PackedNormal = std::array<std::int16_t, 4>;
 PackedNormal packNormal(const glm::vec3& unit_normal, float ambient,
                         const glm::vec2& visibility = glm::vec2(1.0f));
 
-/// Rows of world_from_plant.
-using PackedInstance = std::array<glm::vec4, 3>;
+/// A place where a plant stands, as shaders read it.
+struct PackedInstance {
+  std::array<glm::vec4, 3> rows;  ///< of world_from_plant
+  glm::uvec4 motion{0};           ///< see instance.glsl
+};
 
 /// One mesh at all places of its item.
 struct Draw {
@@ -36,6 +41,7 @@ struct Draw {
   bool thickness_map = false;
   bool leaf_maps = false;            ///< of its material
   bool stated_transmission = false;  ///< its material has DiffuseTransmission
+  bool moving = false;               ///< in wind
   bool seen = true;                  ///< else it is drawn into the shadow map alone
   std::uint32_t index_count = 0, first_index = 0;
   std::int32_t vertex_offset = 0;
@@ -97,11 +103,15 @@ struct PackedScene {
   std::vector<PackedLeafArray> leaf_arrays;  ///< the first two stand in where there are none
   std::vector<PackedTransfer> transfers;
   std::vector<PackedGround> grounds;
-  Bounds bounds;  ///< of all instances
+  PackedMotions motions;
+  Bounds bounds;  ///< of all instances, at rest
   bool ground = false;
   float ground_height = 0.0f;
   glm::vec3 leaf_tint{1.0f};  ///< leafTint() of all foliage, mean over its vertices
 };
+
+/// Extends `all` by what is in the box of a plant at this place.
+void growBounds(const Bounds& box, const PackedInstance& place, Bounds& all);
 
 /// Throws Error for a null plant, arrays of different lengths, indices out of range, transfer
 /// vectors of a plant that is turned or scaled.
@@ -112,7 +122,8 @@ PackedScene packScene(const Scene& scene);
 class GpuScene {
  public:
   GpuScene(const gpu::Device& device, const PackedScene& packed,
-           vk::DescriptorSetLayout material_layout, const gpu::SetLayout& transfer_layout);
+           vk::DescriptorSetLayout material_layout, const gpu::SetLayout& transfer_layout,
+           const MotionLayouts& motion_layouts);
 
   /// Binds all vertex streams and the index buffer; the normals are those asked for.
   void bindVertices(const vk::raii::CommandBuffer& commands, NormalSource normals) const;
@@ -120,15 +131,20 @@ class GpuScene {
   /// Draws one of them with the bound pipeline, of `layout`.
   void record(const vk::raii::CommandBuffer& commands, vk::PipelineLayout layout,
               vk::DescriptorSet frame_set, const Draw& draw) const;
+  /// From now on; without wind, plants that could move are drawn as those that cannot.
+  void setWind(const Wind& wind, const std::optional<Wind>& last);
+  /// Of all that may move in the wind that was set.
   const Bounds& bounds() const { return bounds_; }
+  const GpuMotion& motion() const { return *motion_; }
   bool ground() const { return ground_; }
   float groundHeight() const { return ground_height_; }
   const glm::vec3& leafTint() const { return leaf_tint_; }
   const std::vector<PackedGround>& grounds() const { return grounds_; }
   GpuTransfer& transfer() { return *transfer_; }
 
-  /// Vertex bindings 0..4 and attributes: position, normal, uv, rows of the instance, light from
-  /// transfer vectors (front, back). Without `transfer` every vertex reads the first one's light.
+  /// Vertex bindings 0..4 and attributes: position, normal, uv, the instance (rows, motion), light
+  /// from transfer vectors (front, back). Without `transfer` every vertex reads the first one's
+  /// light.
   static std::vector<vk::VertexInputBindingDescription> bindings(bool transfer);
   static std::vector<vk::VertexInputAttributeDescription> attributes();
   /// Of these, positions, texture coordinates and instances.
@@ -142,9 +158,14 @@ class GpuScene {
   vk::raii::DescriptorPool pool_ = nullptr;
   std::vector<vk::raii::DescriptorSet> material_sets_;
   std::optional<GpuTransfer> transfer_;
+  std::optional<GpuMotion> motion_;
+  std::vector<PackedMotion> moving_items_;
+  std::vector<PackedInstance> places_;  ///< of all items
+  std::vector<bool> can_move_;          ///< of each draw
   std::vector<Draw> draws_;
   std::vector<PackedGround> grounds_;
-  Bounds bounds_;
+  Bounds rest_bounds_, bounds_;
+  std::optional<Wind> bounds_wind_;  ///< that bounds_ are for; unset: at rest
   bool ground_ = false;
   float ground_height_ = 0.0f;
   glm::vec3 leaf_tint_{1.0f};

@@ -10,22 +10,29 @@ constexpr std::uint32_t kFragment[] = {
 #include "shaders/shadow_pass.frag.inc"
 };
 
-vk::raii::Pipeline makePipeline(const gpu::Device& device, const FrameLayout& layout, bool cut) {
-  return gpu::makeGraphicsPipeline(device, {.vertex = kVertex,
-                                            .fragment = cut ? gpu::SpirV(kFragment) : gpu::SpirV(),
-                                            .layout = *layout.pipeline,
-                                            .bindings = GpuScene::bindings(false),
-                                            .attributes = GpuScene::shapeAttributes(),
-                                            .depth = FrameLayout::kDepth,
-                                            .depth_compare = vk::CompareOp::eLess,
-                                            .depth_bias_slope = 1.5f});
+gpu::Constants constantsOf(const Draw& draw) {
+  return termConstants({}, {.alpha_test = draw.alpha_test, .moving = draw.moving});
 }
 
 }  // namespace
 
-ShadowPass::ShadowPass(const gpu::Device& device, const FrameLayout& layout)
-    : opaque_(makePipeline(device, layout, false)),
-      alpha_cut_(makePipeline(device, layout, true)) {}
+void ShadowPass::prepare(const gpu::Device& device, const FrameLayout& layout,
+                         const GpuScene& scene) {
+  for (const Draw& draw : scene.draws()) {
+    gpu::Constants constants = constantsOf(draw);
+    if (pipelines_.contains(constants)) continue;
+    gpu::GraphicsRequest request{.vertex = kVertex,
+                                 .constants = constants,
+                                 .layout = *layout.pipeline,
+                                 .bindings = GpuScene::bindings(false),
+                                 .attributes = GpuScene::shapeAttributes(),
+                                 .depth = FrameLayout::kDepth,
+                                 .depth_compare = vk::CompareOp::eLess,
+                                 .depth_bias_slope = 1.5f};
+    if (draw.alpha_test) request.fragment = kFragment;
+    pipelines_.emplace(std::move(constants), gpu::makeGraphicsPipeline(device, request));
+  }
+}
 
 void ShadowPass::record(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,
                         vk::DescriptorSet frame_set, const GpuScene& scene,
@@ -61,8 +68,7 @@ void ShadowPass::drawCasters(const vk::raii::CommandBuffer& commands, const Fram
   commands.pushConstants<std::uint32_t>(*layout.pipeline, vk::ShaderStageFlagBits::eVertex,
                                         sizeof(shared::DrawUniforms), cascade);
   for (const Draw& draw : scene.draws()) {
-    commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
-                          draw.alpha_test ? *alpha_cut_ : *opaque_);
+    commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipelines_.at(constantsOf(draw)));
     scene.record(commands, *layout.pipeline, frame_set, draw);
   }
 }

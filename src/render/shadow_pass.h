@@ -1,6 +1,8 @@
 #ifndef VERDURE_RENDER_SHADOW_PASS_H_
 #define VERDURE_RENDER_SHADOW_PASS_H_
 
+#include <map>
+
 #include "render/frame_layout.h"
 #include "render/scene.h"
 
@@ -9,7 +11,7 @@ namespace verdure {
 /// Draws the depth of everything as the sun sees it, at each cascade's scale.
 class ShadowPass {
  public:
-  ShadowPass(const gpu::Device& device, const FrameLayout& layout);
+  void prepare(const gpu::Device& device, const FrameLayout& layout, const GpuScene& scene);
   /// Draws the cascades of frame.shadow_from_world into the first `count` layers of `maps`, a depth
   /// image used as kFragmentSampled afterwards. Without `casters` they stay empty.
   void record(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,
@@ -20,7 +22,7 @@ class ShadowPass {
   void drawCasters(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,
                    vk::DescriptorSet frame_set, const GpuScene& scene, std::uint32_t cascade) const;
 
-  vk::raii::Pipeline opaque_, alpha_cut_;
+  std::map<gpu::Constants, vk::raii::Pipeline> pipelines_;
 };
 
 }  // namespace verdure

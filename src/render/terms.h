@@ -20,6 +20,7 @@ struct DrawKind {
   bool thickness_map = false;
   LeafModel leaf = LeafModel::kColor;
   bool stated_transmission = false;
+  bool moving = false;  ///< in wind
   auto operator<=>(const DrawKind&) const = default;
 };
 
@@ -43,7 +44,8 @@ inline gpu::Constants termConstants(const Terms& terms, const DrawKind& kind) {
           kind.scattering,
           kind.thickness_map,
           static_cast<std::uint32_t>(kind.leaf),
-          kind.stated_transmission};
+          kind.stated_transmission,
+          kind.moving};
 }
 
 }  // namespace verdure

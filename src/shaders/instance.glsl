@@ -2,6 +2,8 @@
 layout(location = 3) in vec4 row0;
 layout(location = 4) in vec4 row1;
 layout(location = 5) in vec4 row2;
+// Added to the index of a beam and of a leaf: where its motion is; phase of its trajectories.
+layout(location = 8) in uvec4 seat_motion;
 
 vec3 worldFromPlant(vec3 p) {
   vec4 q = vec4(p, 1.0);

@@ -5,6 +5,7 @@
 #include "shared/density.h"
 #include "shared/leaf_visibility.h"
 #include "terms.glsl"
+#include "motion.glsl"
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec4 encoded_normal;  // w = packVisibility() / 32767
@@ -23,8 +24,9 @@ layout(location = 8) flat out uint out_mirrored;
 
 void main() {
   vec4 decoded = decodeNormal(encoded_normal.xyz);
-  out_position = worldFromPlant(position);
-  vec3 normal = worldNormal(decoded.xyz, kFlipNormal);
+  MovedVertex moved = movedVertex(position, decoded.xyz, false);
+  out_position = worldFromPlant(moved.position);
+  vec3 normal = worldNormal(moved.normal, kFlipNormal);
   out_normal = vec4(normal * inversesqrt(max(dot(normal, normal), 1e-30)), decoded.w);
   bool mirrored = isMirrored();
   vec2 visibility = unpackVisibility(encoded_normal.w * 32767.0);

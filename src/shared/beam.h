@@ -19,7 +19,7 @@ SHARED_BEGIN
 /// (orthonormal), and its length, m.
 struct BeamFrame {
   vec3 root;
-  float length;
+  float span;  ///< length, m
   vec3 t;
   vec3 r;
   vec3 s;
@@ -69,16 +69,16 @@ struct BeamPose {
 SHARED_FUNCTION BeamPose poseOfBeam(BeamFrame frame, vec2 fit, float x, vec2 amplitudes) {
   float amplitude = sqrt(dot(amplitudes, amplitudes));
   BeamPose pose;
-  pose.pivot = frame.root + frame.t * (x * frame.length);
+  pose.pivot = frame.root + frame.t * (x * frame.span);
   pose.t = frame.t;
   pose.aside = amplitude > 0.0f
                    ? (frame.r * amplitudes.x + frame.s * amplitudes.y) * (1.0f / amplitude)
                    : frame.r;
-  amplitude /= frame.length;
+  amplitude /= frame.span;
   float foot = beamFoot(fit, x, amplitude);
   float slope = amplitude * beamSlope(fit, foot);
   pose.offset =
-      frame.length * (pose.aside * (amplitude * beamDeflection(fit, foot)) + frame.t * (foot - x));
+      frame.span * (pose.aside * (amplitude * beamDeflection(fit, foot)) + frame.t * (foot - x));
   pose.cosine = 1.0f / sqrt(1.0f + slope * slope);
   pose.sine = slope * pose.cosine;
   return pose;

@@ -26,11 +26,12 @@ struct FrameUniforms {
   vec4 ray_right;   ///< ray through (x, y) of [-1, 1]^2: forward + x right + y down; w = 2 / width
   vec4 ray_down;    ///< w = 2 / height, pixels
   vec4 ray_forward;
-  vec4 open_light[9];  ///< shIrradiance() / pi by the open sky and the open ground
-  vec4 leaf_tint;      ///< leafTint() of the scene's foliage, mean
-  SkyFormula sky;      ///< kcd/m^2, where the sky has one
+  vec4 open_light[9];         ///< shIrradiance() / pi by the open sky and the open ground
+  vec4 leaf_tint;             ///< leafTint() of the scene's foliage, mean
+  SkyFormula sky;             ///< kcd/m^2, where the sky has one
+  mat4 last_clip_from_world;  ///< of the last frame
 };
-SHARED_SIZE(FrameUniforms, 832);
+SHARED_SIZE(FrameUniforms, 896);
 
 /// Push constants of one draw. Behind them, for the vertex stage of maps seen from the sun: uint
 /// cascade.

@@ -25,7 +25,7 @@ const uint kHangsOnLeaf = 0x80000000u;  ///< or the leaf's index
 /// so on; ends at kHangsOnNothing.
 struct MotionBeam {
   vec3 root;
-  float length;
+  float span;  ///< length, m
   vec3 t;
   float c2;  ///< of (4.8)
   vec3 r;
@@ -74,6 +74,21 @@ struct MotionMoment {
 };
 SHARED_SIZE(MotionMoment, 96);
 
+/// Push constants of branch_motion and leaf_motion: all places of one kind of plant, all of its
+/// branches or leaves.
+struct MotionJob {
+  MotionMoment moment;
+  uint whole;           ///< seconds
+  uint first;           ///< branch or leaf
+  uint count;           ///< of them
+  uint first_instance;  ///< a place
+  uint out_base;        ///< of the results, place by place
+  uint wind_texels;     ///< first of the texture of wind
+  uint wind_size;       ///< its width and height
+  uint padding;
+};
+SHARED_SIZE(MotionJob, 128);
+
 /// Speed of the wind at a place in the world, m/s: gusts go with the wind from tree to tree.
 SHARED_FUNCTION float gustySpeed(MotionMoment moment, vec3 origin) {
   float way = dot(vec3(moment.toward), origin);
@@ -99,7 +114,7 @@ SHARED_FUNCTION vec2 branchAmplitudes(MotionBeam beam, MotionDrive drive, vec3 t
   vec3 s = cross(beam.t, beam.r);
   vec2 tip = push * (drive.swing * noise + drive.mean * vec2(dot(beam.r, toward), dot(s, toward)));
   tip = tip * (1.0f / sqrt(1.0f + dot(tip, tip) * (1.0f / (kMostTip * kMostTip))));
-  return tip * (beam.length / (beam.c2 + beam.c4));
+  return tip * (beam.span / (beam.c2 + beam.c4));
 }
 
 /// Where a leaf reads the texture of wind on the planes xy, yz and xz of the world.
@@ -157,7 +172,7 @@ SHARED_FUNCTION MovedVertex bentByBeam(MotionBeam beam, float place, vec2 amplit
                                        MovedVertex vertex) {
   BeamFrame frame;
   frame.root = beam.root;
-  frame.length = beam.length;
+  frame.span = beam.span;
   frame.t = beam.t;
   frame.r = beam.r;
   frame.s = cross(beam.t, beam.r);

@@ -125,6 +125,12 @@ MotionTree motionTree(const Plant& plant) {
     for (std::uint32_t beam = hung[b].beam; beam != kNone; beam = tree.branches[beam].parent)
       tree.branches[beam].wood_m3 += wood;
   }
+  for (const Leaf& leaf : plant.leaves) {
+    if (leaf.branch == kNone) continue;
+    for (std::uint32_t beam = hung[leaf.branch].beam; beam != kNone;
+         beam = tree.branches[beam].parent)
+      tree.branches[beam].leaf_m2 += leaf.area;
+  }
 
   for (const Mesh& mesh : plant.meshes) {
     std::vector<VertexMotion>& motion = tree.meshes.emplace_back(mesh.positions.size());
@@ -135,9 +141,10 @@ MotionTree motionTree(const Plant& plant) {
       motion[v] = {hung[b].beam, placesAt(b, mesh.positions[v])};
     });
   }
-  for (const Leaf& leaf : plant.leaves) {
+  for (std::uint32_t i = 0; i < plant.leaves.size(); ++i) {
+    const Leaf& leaf = plant.leaves[i];
     if (leaf.branch == kNone) continue;
-    const VertexMotion whole{hung[leaf.branch].beam, placesAt(leaf.branch, leaf.stalk)};
+    const VertexMotion whole{hung[leaf.branch].beam, placesAt(leaf.branch, leaf.stalk), i};
     const Mesh& mesh = plant.meshes[leaf.mesh];
     for (std::uint32_t k = 0; k < leaf.triangle_count; ++k)
       for (std::size_t c = 0; c < 3; ++c)

@@ -40,6 +40,7 @@ using glm::mix;
 using glm::normalize;
 using glm::pow;
 using glm::reflect;
+using glm::sin;
 using glm::smoothstep;
 using glm::sqrt;
 }  // namespace verdure::shared

@@ -66,7 +66,9 @@ struct Sheet {
 };
 
 std::vector<std::uint8_t> packed(const AttributeValues& values) {
-  if (!values.attribute->bytes) return bytesOf(values.values);
+  if (values.attribute->stored == Stored::kFloats) return bytesOf(values.values);
+  if (values.attribute->stored == Stored::kIndices)
+    return bytesOf(std::vector<std::uint16_t>(values.values.begin(), values.values.end()));
   std::vector<std::uint8_t> bytes;
   bytes.reserve(values.values.size());
   for (const float v : values.values) bytes.push_back(toByte(v));
@@ -284,10 +286,12 @@ class AttributeWriter {
     Json& json = accessors[*accessor];
     for (const char* key : {"byteOffset", "normalized", "min", "max", "sparse"}) json.erase(key);
     json["bufferView"] = *view;
-    json["componentType"] = attribute.bytes ? kUnsignedByte : kFloat;
+    json["componentType"] = attribute.stored == Stored::kShares    ? kUnsignedByte
+                            : attribute.stored == Stored::kIndices ? kUnsignedShort
+                                                                   : kFloat;
     json["count"] = count;
     json["type"] = kTypes[attribute.components - 1];
-    if (attribute.bytes) json["normalized"] = true;
+    if (attribute.stored == Stored::kShares) json["normalized"] = true;
     for (const std::size_t p : sheet.primitives) primitives[p]["attributes"][semantic] = *accessor;
   }
 
@@ -392,7 +396,7 @@ GltfDocument relitDocument(const Plant& plant, const CrownLight& light,
   };
   std::vector<VertexAttribute> attributes;
   // What a bake left alone stays as it is in the file, bit by bit.
-  attributes.push_back({"NORMAL", 3, false, false, glm::vec4(0, 1, 0, 0),
+  attributes.push_back({"NORMAL", 3, Stored::kFloats, false, glm::vec4(0, 1, 0, 0),
                         [&](std::size_t m, const Json& primitive) {
                           return !light.meshes[m].normals.empty() &&
                                  !(member(primitive["attributes"], "NORMAL") != nullptr &&
@@ -401,11 +405,11 @@ GltfDocument relitDocument(const Plant& plant, const CrownLight& light,
                         [&light](std::size_t m, std::size_t v, const glm::dmat4& plant_from_local) {
                           return localNormal(plant_from_local, light.meshes[m].normals[v]);
                         }});
-  attributes.push_back({"_AO", 1, false, false, glm::vec4(1.0f), has_ambient,
+  attributes.push_back({"_AO", 1, Stored::kFloats, false, glm::vec4(1.0f), has_ambient,
                         [&light](std::size_t m, std::size_t v, const glm::dmat4&) {
                           return glm::vec4(light.meshes[m].ambient[v]);
                         }});
-  attributes.push_back({"_VISIBILITY", 2, false, false, glm::vec4(1.0f),
+  attributes.push_back({"_VISIBILITY", 2, Stored::kFloats, false, glm::vec4(1.0f),
                         [&light](std::size_t m, const Json&) {
                           const MeshLight& mesh = light.meshes[m];
                           return !mesh.ambient.empty() && !mesh.visibility.empty();
@@ -416,9 +420,9 @@ GltfDocument relitDocument(const Plant& plant, const CrownLight& light,
   if (options.color1) {
     // COLOR_1 may not stand without a COLOR_0, which multiplies the base colour: white.
     attributes.push_back(
-        {"COLOR_0", 4, true, true, glm::vec4(1.0f), has_ambient,
+        {"COLOR_0", 4, Stored::kShares, true, glm::vec4(1.0f), has_ambient,
          [](std::size_t, std::size_t, const glm::dmat4&) { return glm::vec4(1.0f); }});
-    attributes.push_back({"COLOR_1", 4, true, false, glm::vec4(1.0f), has_ambient,
+    attributes.push_back({"COLOR_1", 4, Stored::kShares, false, glm::vec4(1.0f), has_ambient,
                           [&light](std::size_t m, std::size_t v, const glm::dmat4&) {
                             return glm::vec4(glm::vec3(light.meshes[m].ambient[v]), 1.0f);
                           }});

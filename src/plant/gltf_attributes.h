@@ -7,11 +7,18 @@
 
 namespace verdure {
 
+/// How a vertex attribute's numbers are stored.
+enum class Stored {
+  kFloats,
+  kShares,   ///< in [0, 1], as normalised bytes
+  kIndices,  ///< whole, in [0, 65535], as unsigned shorts
+};
+
 /// A vertex attribute that is to be written into a plant's document.
 struct VertexAttribute {
-  std::string name;        ///< semantic
-  int components = 1;      ///< 1 to 4
-  bool bytes = false;      ///< values are in [0, 1], written as normalised bytes; else floats
+  std::string name;    ///< semantic
+  int components = 1;  ///< 1 to 4
+  Stored stored = Stored::kFloats;
   bool filler = false;     ///< only where the primitive has none of that name
   glm::vec4 unused{0.0f};  ///< of elements that no triangle uses
   /// Whether the part has it; null: all do.

@@ -104,6 +104,11 @@ enum class ExrDepth { kFloat, kHalf };
 void writeExr(const HdrImage& image, const std::filesystem::path& path,
               ExrDepth depth = ExrDepth::kFloat);
 
+/// Encodes halves that are given by their bits, RGBA and rows from the top, as OpenEXR, ZIP
+/// compressed. Bits are kept whatever number they are: textures of data use them as integers.
+std::vector<std::uint8_t> encodeExrBits(int width, int height,
+                                        const std::vector<std::uint16_t>& rgba);
+
 }  // namespace verdure
 
 #endif  // VERDURE_IMAGE_H_

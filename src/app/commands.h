@@ -29,6 +29,21 @@ struct GrowCommand {
 };
 void runGrow(GrowCommand command);
 
+struct ExportCommand {
+  std::string input;
+  std::string output;
+  LoadOptions load;
+  std::string wind;  ///< target; empty: attributes, or none with skin
+  bool list = false;
+  bool skin = false;
+  double seconds = 4.0, fps = 24.0, wind_speed = 6.0, wind_from_deg = 270.0, gusts = 0.4;
+  int joints = 256;
+  std::uint64_t seed = 1;
+  std::string clip_option;  ///< one that was given and that only a skin has
+  bool json = false;
+};
+void runExport(const ExportCommand& command);
+
 struct LeafGrowCommand {
   LeafGrowOptions grow;
   std::string output;  ///< folder
@@ -40,6 +55,7 @@ void runLeafGrow(const LeafGrowCommand& command);
 struct InspectCommand {
   std::string input;
   LoadOptions load;
+  std::string skeleton;  ///< .obj or .png to write, empty for none
   bool json = false;
 };
 void runInspect(const InspectCommand& command);

@@ -230,6 +230,8 @@ int run(int argc, char** argv) {
   inspect_app->add_option("file", inspect.input, "Plant: .glb .gltf .obj .fbx .dae .ply")
       ->required();
   addLoadOptions(*inspect_app, inspect.load);
+  inspect_app->add_option("--skeleton", inspect.skeleton,
+                          "Write its branches: lines by level, .obj, or a drawing, .png");
   inspect_app->add_flag("--json", inspect.json, "Print JSON");
 
   BakeCommand bake;
@@ -276,6 +278,40 @@ int run(int argc, char** argv) {
   bake_app->add_option("--report", bake.report, "Write every number of the bake as JSON");
   bake_app->add_flag("--color1", bake.color1, "Write the ambient coefficient as COLOR_1 too");
   bake_app->add_flag("--json", bake.json, "Print the report as JSON");
+
+  ExportCommand wind_files;
+  CLI::App* export_app =
+      app.add_subcommand("export", "Write a plant with wind data for other programs");
+  export_app->add_option("file", wind_files.input, "Plant: .glb .gltf .obj .fbx .dae .ply");
+  export_app->add_option("-o,--output", wind_files.output, "File to write: .glb or .gltf");
+  addLoadOptions(*export_app, wind_files.load);
+  export_app->add_option("--wind", wind_files.wind,
+                         "What the wind data are for, see --list (default: attributes)");
+  export_app->add_flag("--list", wind_files.list, "List what wind data can be for");
+  constexpr const char* kClipGroup = "Clip";
+  export_app->add_flag("--skin", wind_files.skin, "Instead: a skin, and a clip that loops")
+      ->group(kClipGroup);
+  export_app->add_option("--seconds", wind_files.seconds, "Length of the loop, 0.5 to 60")
+      ->group(kClipGroup)
+      ->capture_default_str();
+  export_app->add_option("--fps", wind_files.fps, "Frames a second, 5 to 120")
+      ->group(kClipGroup)
+      ->capture_default_str();
+  export_app->add_option("--joints", wind_files.joints, "Joints at most, 8 to 4096")
+      ->group(kClipGroup)
+      ->capture_default_str();
+  export_app->add_option("--wind-speed", wind_files.wind_speed, "m/s, 0 to 60")
+      ->group(kClipGroup)
+      ->capture_default_str();
+  export_app->add_option("--wind-from", wind_files.wind_from_deg, "Degrees (0: +Z, 90: +X)")
+      ->group(kClipGroup)
+      ->capture_default_str();
+  export_app->add_option("--gusts", wind_files.gusts, "Share by which the speed varies, 0 to 1")
+      ->group(kClipGroup)
+      ->capture_default_str();
+  export_app->add_option("--seed", wind_files.seed, "Each seed moves otherwise")
+      ->capture_default_str();
+  export_app->add_flag("--json", wind_files.json, "Print JSON");
 
   RenderCommand render;
   CLI::App* render_app = app.add_subcommand("render", "Render a plant to a picture");
@@ -435,10 +471,10 @@ int run(int argc, char** argv) {
     return fail(std::string(e.what()) + "; see " + help);
   }
   if (app.get_subcommands().empty())
-    throw Error(
-        "command line", "no command is named",
-        "use grow, leaf, inspect, bake, render, reference, compare, sky, figures or report; see " +
-            help);
+    throw Error("command line", "no command is named",
+                "use grow, leaf, inspect, bake, export, render, reference, compare, sky, figures "
+                "or report; see " +
+                    help);
   if (*figures_app && figures_app->get_subcommands().empty())
     throw Error("figures", "no paper is named",
                 "use luft, gumbau, leaf or sky; see verdure figures --help");
@@ -455,6 +491,9 @@ int run(int argc, char** argv) {
     const CLI::Option* const of_render = render_app->get_option_no_throw(name);
     if (of_render != nullptr && of_render->count() > 0) render.bake.metaball_option = name;
   }
+  for (const CLI::Option* option : export_app->get_options())
+    if (option->get_group() == kClipGroup && option->count() > 0)
+      wind_files.clip_option = option->get_name();
   setThreadCount(threads);
   if (*grow_app) runGrow(grow);
   if (*leaf_grow_app) runLeafGrow(leaf_grow);
@@ -462,6 +501,7 @@ int run(int argc, char** argv) {
   if (*leaf_bake_app) runLeafBake(leaf_bake);
   if (*inspect_app) runInspect(inspect);
   if (*bake_app) runBake(bake);
+  if (*export_app) runExport(wind_files);
   if (*render_app) runRender(render);
   if (*reference_app) runReference(reference);
   if (*compare_app) return runCompare(compare);

@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <deque>
 #include <fstream>
 #include <utility>
 
@@ -110,6 +111,15 @@ void writeFile(const fs::path& path, std::span<const std::uint8_t> bytes) {
   PendingFile file(path);
   file.write(bytes, path);
   file.moveTo(path);
+}
+
+void writeFiles(const std::vector<std::pair<fs::path, std::vector<std::uint8_t>>>& files) {
+  std::deque<PendingFile> pending;  // they cannot move
+  for (const auto& [path, bytes] : files) {
+    checkTarget(path);
+    pending.emplace_back(path).write(bytes, path);
+  }
+  for (std::size_t i = 0; i < files.size(); ++i) pending[i].moveTo(files[i].first);
 }
 
 void writeFile(const fs::path& path, const std::string& text) {

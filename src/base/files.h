@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "verdure/error.h"
@@ -22,6 +23,12 @@ std::vector<std::uint8_t> readFile(const std::filesystem::path& path);
 /// missing or not writable, or if a folder, device or pipe is in the place.
 void writeFile(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 void writeFile(const std::filesystem::path& path, const std::string& text);
+
+/// Writes several files that belong together: all of them are complete beside their places before
+/// the first is moved there. Throws Error as writeFile() does, and then leaves all as they were
+/// unless a move itself fails.
+void writeFiles(
+    const std::vector<std::pair<std::filesystem::path, std::vector<std::uint8_t>>>& files);
 
 /// Throws Error unless a file could be written at `path` (checked before long work starts).
 void checkWritable(const std::filesystem::path& path);

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/check.h"
 #include "base/files.h"
 #include "base/radiance_file.h"
 #include "verdure/image.h"
@@ -249,6 +250,30 @@ void writeExr(const HdrImage& image, const std::filesystem::path& path, ExrDepth
     file.writePixels(image.height);
   }
   writeFile(path, stream.bytes);
+}
+
+std::vector<std::uint8_t> encodeExrBits(int width, int height,
+                                        const std::vector<std::uint16_t>& rgba) {
+  VERDURE_CHECK_EQ(rgba.size(),
+                   4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  Imf::Header header(width, height);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  Imf::FrameBuffer buffer;
+  // The library's buffers are not const; a file that is written is not changed.
+  char* channel = reinterpret_cast<char*>(const_cast<std::uint16_t*>(rgba.data()));
+  for (const char* name : {"R", "G", "B", "A"}) {
+    header.channels().insert(name, Imf::Channel(Imf::HALF));
+    buffer.insert(name, Imf::Slice(Imf::HALF, channel, 4 * sizeof(std::uint16_t),
+                                   4 * sizeof(std::uint16_t) * static_cast<std::size_t>(width)));
+    channel += sizeof(std::uint16_t);
+  }
+  MemoryOutput stream;
+  {
+    Imf::OutputFile file(stream, header);  // completes the file when it goes
+    file.setFrameBuffer(buffer);
+    file.writePixels(height);
+  }
+  return std::move(stream.bytes);
 }
 
 }  // namespace verdure

@@ -148,7 +148,8 @@ std::size_t appendView(GltfDocument& document, std::vector<std::uint8_t> bytes, 
   return views.size() - 1;
 }
 
-void writeGltf(GltfDocument document, const fs::path& path) {
+std::vector<std::pair<fs::path, std::vector<std::uint8_t>>> encodeGltf(GltfDocument document,
+                                                                       const fs::path& path) {
   const bool binary = path.extension() != ".gltf";
   std::vector<std::pair<fs::path, std::vector<std::uint8_t>>> files;
   placeImages(document, path, binary, files);
@@ -166,13 +167,11 @@ void writeGltf(GltfDocument document, const fs::path& path) {
   }
   constexpr auto kReplace = Json::error_handler_t::replace;
   if (!binary) {
-    for (const auto& [file, bytes] : files) {
-      fs::create_directories(file.parent_path().empty() ? "." : file.parent_path());
-      writeFile(file, bytes);
-    }
-    if (!bin.empty()) writeFile(path.parent_path() / (path.stem().string() + ".bin"), bin);
-    writeFile(path, document.json.dump(1, ' ', false, kReplace) + "\n");
-    return;
+    const std::string json = document.json.dump(1, ' ', false, kReplace) + "\n";
+    if (!bin.empty())
+      files.emplace_back(path.parent_path() / (path.stem().string() + ".bin"), std::move(bin));
+    files.emplace_back(path, std::vector<std::uint8_t>(json.begin(), json.end()));
+    return files;
   }
   std::string json = document.json.dump(-1, ' ', false, kReplace);
   while (json.size() % 4 != 0) json += ' ';
@@ -193,7 +192,15 @@ void writeGltf(GltfDocument document, const fs::path& path) {
     appendWord(out, 0x004e4942);  // "BIN"
     out.insert(out.end(), bin.begin(), bin.end());
   }
-  writeFile(path, out);
+  files.emplace_back(path, std::move(out));
+  return files;
+}
+
+void writeGltf(GltfDocument document, const fs::path& path) {
+  const auto files = encodeGltf(std::move(document), path);
+  for (const auto& [file, bytes] : files)
+    if (file.parent_path() != path.parent_path()) fs::create_directories(file.parent_path());
+  writeFiles(files);
 }
 
 }  // namespace verdure

@@ -98,7 +98,11 @@ std::vector<std::uint8_t> imageBytes(const GltfDocument& document, std::size_t i
 std::size_t appendView(GltfDocument& document, std::vector<std::uint8_t> bytes, int target,
                        std::size_t stride, std::optional<std::size_t> reuse = std::nullopt);
 
-/// Writes .glb or .gltf with a .bin beside it; only bytes that a buffer view names are written.
+/// The files that .glb or .gltf needs, the one at `path` last: .gltf has a .bin and images beside
+/// it. Only bytes that a buffer view names are kept.
+std::vector<std::pair<std::filesystem::path, std::vector<std::uint8_t>>> encodeGltf(
+    GltfDocument document, const std::filesystem::path& path);
+/// Writes them.
 void writeGltf(GltfDocument document, const std::filesystem::path& path);
 
 /// The generator string that verdure writes.

@@ -8,6 +8,7 @@
 #include "plant/gltf_accessor.h"
 #include "plant/gltf_leaf_material.h"
 #include "plant/gltf_scene.h"
+#include "plant/gltf_stems.h"
 #include "plant/load.h"
 
 namespace verdure {
@@ -89,6 +90,7 @@ class GltfImporter {
     if (default_material_ >= 0) plant().notes.push_back("parts without a material are white");
     decodeTextures();
     noteUnread();
+    readStems(document_, plant(), raw_.branch_origin);
     plant().source = source_;
     return std::move(raw_);
   }
@@ -417,6 +419,7 @@ class GltfImporter {
     part.mesh.material = materialOf(primitive, who);
     readUvs(*attributes, part.mesh, from, count, place.instances(), who);
     readLight(*attributes, part.mesh, from, count, place.instances(), who);
+    readStemIds(*attributes, part.mesh, from, count, place.instances(), who);
     namePart(part, node, mesh, several);
     noteAttributes(*attributes, primitive, who);
     raw_.parts.push_back(std::move(part));
@@ -505,6 +508,22 @@ class GltfImporter {
     read("_AO", 1, [&](const auto& share) { mesh.ambient.push_back(share(0)); });
     read("_VISIBILITY", 2,
          [&](const auto& share) { mesh.visibility.emplace_back(share(0), share(1)); });
+  }
+
+  /// Stems by number, of leaves too: keepStems() sorts them out.
+  void readStemIds(const Json& attributes, Mesh& mesh, const MeshSource& from, std::size_t count,
+                   std::size_t instances, const std::string& who) {
+    const auto accessor = readIndex(document_, attributes, kStemId, "accessors", who);
+    if (!accessor) return;
+    const auto values = readFloats(document_, *accessor, 1, who);
+    if (values.size() != count)
+      document_.fail(fmt::format("{}: {} and POSITION differ in length", who, kStemId));
+    const std::size_t used = from.vertices_per_instance;
+    for (std::size_t i = 0; i < used * instances; ++i) {
+      const float id = values[from.vertex_of.empty() ? i % used : from.vertex_of[i % used]];
+      mesh.branch_of_vertex.push_back(
+          id >= 0.0f && id < 16777216.0f ? static_cast<std::uint32_t>(id) : kNone);
+    }
   }
 
   void namePart(RawPart& part, std::size_t node, std::size_t mesh, bool several) {

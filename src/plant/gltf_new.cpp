@@ -5,6 +5,7 @@
 #include "plant/gltf_accessor.h"
 #include "plant/gltf_export.h"
 #include "plant/gltf_leaf_material.h"
+#include "plant/gltf_stems.h"
 #include "plant/tangents.h"
 #include "shared/leaf_basis.h"
 
@@ -29,6 +30,7 @@ class DocumentBuilder {
     for (const char* key : {"materials", "meshes", "accessors"}) json[key] = Json::array();
     addTextures();
     for (const Material& material : plant_.materials) addMaterial(material);
+    stem_ids_ = stemIds(plant_);
     Json children = Json::array();
     for (std::size_t i = 0; i < plant_.meshes.size(); ++i) {
       if (plant_.meshes[i].indices.empty()) continue;
@@ -39,6 +41,7 @@ class DocumentBuilder {
     if (children.empty())
       throw Error(plant_.name, "the plant has no triangles to write", "grow or load one first");
     json["nodes"][0]["children"] = std::move(children);
+    writeStems(plant_, document_);
     return std::move(document_);
   }
 
@@ -151,6 +154,7 @@ class DocumentBuilder {
     const Material& material = plant_.materials[mesh.material];
     if (textureOf(material.normal_texture) >= 0 && !mesh.uvs.empty() && !normals.empty())
       add("TANGENT", bytesOf(vertexTangents(mesh, normals)), "VEC4");
+    if (!stem_ids_.empty()) add(kStemId, bytesOf(stem_ids_[index]), "SCALAR");
     if (light != nullptr && !light->ambient.empty()) {
       add("_AO", bytesOf(light->ambient), "SCALAR");
       if (!light->visibility.empty()) add("_VISIBILITY", bytesOf(light->visibility), "VEC2");
@@ -186,6 +190,7 @@ class DocumentBuilder {
   const ExportOptions& options_;
   GltfDocument document_;
   std::vector<int> texture_of_;
+  std::vector<std::vector<float>> stem_ids_;
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <new>
 
 #include "plant/gltf_document.h"
+#include "plant/gltf_stems.h"
 #include "plant/normals.h"
 
 namespace verdure {
@@ -75,6 +76,7 @@ Plant finish(RawPlant raw, const LoadOptions& options, const std::string& where)
   }
   classifyParts(plant, names, options, where);
   findLeaves(plant);
+  keepStems(plant, raw.branch_origin - plant.origin);
   return plant;
 }
 

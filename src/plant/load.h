@@ -17,7 +17,8 @@ struct RawPart {
 
 /// A plant whose positions are still in world coordinates.
 struct RawPlant {
-  Plant plant;  ///< all but its meshes
+  Plant plant;  ///< all but its meshes; branches relative to branch_origin
+  glm::dvec3 branch_origin{0.0};
   std::vector<RawPart> parts;
 };
 

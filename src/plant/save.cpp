@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plant/gltf_attributes.h"
 #include "plant/gltf_export.h"
 
 namespace verdure {
@@ -39,18 +40,6 @@ void checkLight(const Plant& plant, const CrownLight& light, const std::string& 
             where, "the light of part '" + plant.meshes[i].name + "' has visibility outside [0, 1]",
             "clamp it");
   }
-}
-
-/// Whether the plant's meshes are still those of its document.
-bool matchesSource(const Plant& plant) {
-  if (!plant.source || plant.source->meshes.size() != plant.meshes.size()) return false;
-  for (std::size_t i = 0; i < plant.meshes.size(); ++i) {
-    const MeshSource& from = plant.source->meshes[i];
-    if (from.vertices_per_instance == 0 ||
-        plant.meshes[i].positions.size() % from.vertices_per_instance != 0)
-      return false;
-  }
-  return true;
 }
 
 }  // namespace

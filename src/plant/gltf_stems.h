@@ -1,0 +1,32 @@
+#ifndef VERDURE_PLANT_GLTF_STEMS_H_
+#define VERDURE_PLANT_GLTF_STEMS_H_
+
+#include "plant/gltf_document.h"
+
+// Plant::branches in a glTF file. `_STEM_ID` (float) holds the number of each vertex's branch, of
+// leaves too, -1 for none. asset.extras.verdure.stems holds the branches themselves: "points", an
+// accessor of VEC4 floats: position and radius, m, relative to "origin", for all branches in turn,
+// base to tip; "stems", an accessor of VEC4 floats, one for each branch: its parent's number or -1,
+// its level, where it leaves its parent, [0, 1], and the number of its first point. Programs that
+// renumber accessors drop extras of the asset, or keep them beside other accessors: what does not
+// fit is left out.
+namespace verdure {
+
+inline constexpr const char* kStemId = "_STEM_ID";
+
+/// For each mesh and vertex; empty for a plant without branches.
+std::vector<std::vector<float>> stemIds(const Plant& plant);
+
+/// Replaces the document's stems by the plant's, if it has any.
+void writeStems(const Plant& plant, GltfDocument& document);
+
+/// Fills Plant::branches, relative to `origin`, if the document has any that are whole.
+void readStems(const GltfDocument& document, Plant& plant, glm::dvec3& origin);
+
+/// Takes the branches by `offset` into the plant's frame, checks them against its meshes, and gives
+/// each leaf that of its vertices: Mesh::branch_of_vertex is of wood alone then.
+void keepStems(Plant& plant, const glm::dvec3& offset);
+
+}  // namespace verdure
+
+#endif  // VERDURE_PLANT_GLTF_STEMS_H_

@@ -130,8 +130,8 @@ TEST_F(InWind, NothingBendsFartherThanItsMost) {
   float most = 0.0f;
   for (std::size_t b = 0; b < amplitudes.size(); ++b) {
     const MotionBranch& branch = motion().tree.branches[b];
-    most = std::max(most, glm::length(amplitudes[b]) * (branch.fit.x + branch.fit.y) /
-                              branch.length);
+    most =
+        std::max(most, glm::length(amplitudes[b]) * (branch.fit.x + branch.fit.y) / branch.length);
   }
   EXPECT_LE(most, shared::kMostTip * 1.0001f);
   EXPECT_GT(most, shared::kMostTip * 0.8f);

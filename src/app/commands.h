@@ -157,6 +157,10 @@ struct RenderCommand : SceneOptions {
   int shadow_map = 2048;
   std::string cascades = "auto";
   DeviceOptions device;
+  WindOptions wind;
+  std::string frames;  ///< FIRST:LAST; empty: one picture
+  int fps = 24;
+  std::string motion_vectors;  ///< file
   bool json = false;
 };
 void runRender(const RenderCommand& command);
@@ -170,6 +174,7 @@ struct ReferenceCommand : SceneOptions {
   double noise = 0.0;
   int bounces = 32;
   std::uint32_t seed = 1;
+  WindOptions wind;
   bool json = false;
 };
 void runReference(const ReferenceCommand& command);

@@ -100,6 +100,16 @@ void addSceneOptions(CLI::App& command, SceneOptions& scene) {
   command.add_flag("--no-ground", scene.no_ground, "Leave the ground out");
 }
 
+void addWindOptions(CLI::App& command, WindOptions& wind) {
+  command.add_option("--wind", wind.speed,
+                     "Mean speed of the wind, m/s, 0 to 60 (default: 5 at a time, else 0)");
+  command.add_option("--wind-from", wind.from_deg, "Azimuth that it comes from, degrees")
+      ->capture_default_str();
+  command.add_option("--gusts", wind.gusts, "By which share the wind rises and falls, 0 to 1")
+      ->capture_default_str();
+  command.add_option("--time", wind.time, "Show the plant at this time, s");
+}
+
 void addDeviceOptions(CLI::App& command, DeviceOptions& device) {
   command.add_option("--device", device.device, "Part of the name of the Vulkan device to use");
   command.add_flag("--validation", device.validation, "Check the use of Vulkan (slow)");
@@ -316,7 +326,9 @@ int run(int argc, char** argv) {
   RenderCommand render;
   CLI::App* render_app = app.add_subcommand("render", "Render a plant to a picture");
   addSceneOptions(*render_app, render);
-  render_app->add_option("-o,--output", render.output, "File to write: .png, or .exr in kcd/m^2")
+  render_app
+      ->add_option("-o,--output", render.output,
+                   "File to write: .png, or .exr in kcd/m^2; for a film see --frames")
       ->required();
   render_app
       ->add_option("--light", render.light,
@@ -346,6 +358,13 @@ int run(int argc, char** argv) {
   render_app
       ->add_option("--cascades", render.cascades, "Shadow maps, finer near the eye: auto or 1 to 4")
       ->capture_default_str();
+  addWindOptions(*render_app, render.wind);
+  render_app->add_option(
+      "--frames", render.frames,
+      "FIRST:LAST: a film (.mp4, .webm or .gif by ffmpeg) or numbered pictures (.png)");
+  render_app->add_option("--fps", render.fps, "Frames a second, 1 to 240")->capture_default_str();
+  render_app->add_option("--motion-vectors", render.motion_vectors,
+                         "Write how far each pixel has come since the last frame: .exr, pixels");
   addDeviceOptions(*render_app, render.device);
   constexpr const char* kBakeGroup = "Density field (given any, the file's own bake is left)";
   addBakeOptions(*render_app, render.bake, kBakeGroup);
@@ -358,6 +377,7 @@ int run(int argc, char** argv) {
   reference_app
       ->add_option("-o,--output", reference.output, "File to write: .png, or .exr in kcd/m^2")
       ->required();
+  addWindOptions(*reference_app, reference.wind);
   addDaylightOptions(*reference_app, reference.daylight);
   addExposureOptions(*reference_app, reference.exposure);
   reference_app->add_option("--samples", reference.samples, "Paths a pixel at most")

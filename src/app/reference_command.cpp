@@ -31,11 +31,14 @@ void runReference(const ReferenceCommand& command) {
   options.noise = command.noise;
   options.seed = command.seed;
   checkOutput(command.output, {".exr", ".png"});
+  const Wind wind = command.wind.wind(false);
 
   Progress progress("reference");
   progress.show("loading");
   Plant plant = loadPlant(command.input, command.load);
   restoreLeafNormals(plant);
+  if (wind.speed > 0.0f)
+    movePlant(motionFor(plant), wind, command.wind.time.value_or(0.0), {}, plant);
   const Scene scene = command.sceneOf(plant, nullptr);
   options.camera = command.cameraFor(
       scene, static_cast<float>(options.width) / static_cast<float>(options.height));

@@ -8,8 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/video.h"
 #include "base/files.h"
 #include "base/progress.h"
+#include "shared/tone.h"
 #include "verdure/error.h"
 #include "verdure/leaf_visibility.h"
 
@@ -131,6 +133,61 @@ double addLeafVisibility(const Plant& plant, Progress& progress, CrownLight& lig
   return timer.seconds();
 }
 
+/// First and last frame.
+std::optional<std::pair<int, int>> framesOf(const RenderCommand& command) {
+  if (command.fps < 1 || command.fps > 240)
+    throw Error("--fps", fmt::format("{} is out of range", command.fps), "choose 1 to 240");
+  if (command.frames.empty()) return std::nullopt;
+  const std::size_t colon = command.frames.find(':');
+  int first = 0, last = 0;
+  const auto read = [](const std::string& text, int& out) {
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), out);
+    return problem == std::errc() && end == text.data() + text.size();
+  };
+  if (colon == std::string::npos || !read(command.frames.substr(0, colon), first) ||
+      !read(command.frames.substr(colon + 1), last) || first < 0)
+    throw Error("--frames", fmt::format("'{}' is no range of frames", command.frames),
+                "write FIRST:LAST, like 0:95");
+  if (last < first)
+    throw Error("--frames", fmt::format("{} is before {}", last, first),
+                fmt::format("write {}:{}", last, first));
+  if (!command.motion_vectors.empty())
+    throw Error("--motion-vectors", "is for one picture, not for frames", "leave one out");
+  return std::pair(first, last);
+}
+
+/// Motion vectors as a picture: red to the right, green down, pixels.
+HdrImage asPicture(const Frame& frame) {
+  HdrImage picture(frame.image.width, frame.image.height);
+  for (std::size_t i = 0; i < frame.motion.size(); ++i)
+    picture.rgb[i] = glm::vec3(frame.motion[i], 0.0f);
+  return picture;
+}
+
+/// All frames of a film, lit and exposed as its first. Returns that.
+Frame drawFilm(const RenderCommand& command, const std::pair<int, int>& frames, View view,
+               Renderer& renderer, Progress& progress) {
+  Video video(command.output, command.fps);
+  const double start = view.seconds;
+  std::optional<Frame> first;
+  for (int n = frames.first; n <= frames.second; ++n) {
+    const int count = frames.second - frames.first + 1;
+    progress.show(fmt::format("frame {} of {}", n - frames.first + 1, count),
+                  static_cast<double>(n - frames.first) / count);
+    view.seconds = start + static_cast<double>(n) / command.fps;
+    Frame frame = renderer.render(view);
+    video.add(frame.image, n);
+    if (first) continue;
+    if (!view.exposure.ev && frame.average_luminance > 0.0f)
+      view.exposure.ev = std::log2(frame.average_luminance / shared::meteredLuminance(0.0f));
+    view.exposure.white = frame.white;
+    view.shadow_cascades = frame.shadow_cascades;
+    first = std::move(frame);
+  }
+  video.finish();
+  return std::move(*first);
+}
+
 }  // namespace
 
 void runRender(const RenderCommand& command) {
@@ -169,7 +226,14 @@ void runRender(const RenderCommand& command) {
       command.light == "expressive" ? BakeField::kMetaball : BakeField::kOpticalDepth);
   const DensityOptions bake_options = command.bake.checked();
   const DepthOptions depth_options = command.bake.checkedDepth();
-  checkOutput(command.output, {".png", ".exr"});
+  const auto frames = framesOf(command);
+  if (frames)
+    Video(command.output, command.fps);  // what it lacks is said before long work
+  else
+    checkOutput(command.output, {".png", ".exr"});
+  view.wind = command.wind.wind(frames.has_value());
+  view.seconds = command.wind.time.value_or(0.0);
+  if (!command.motion_vectors.empty()) checkOutput(command.motion_vectors, {".exr"});
   view.hdr = std::filesystem::path(command.output).extension() == ".exr";
 
   Progress progress("render");
@@ -211,15 +275,23 @@ void runRender(const RenderCommand& command) {
   if (view.terms.normal == NormalSource::kLeaf) restoreLeafNormals(plant);
   Scene scene = command.sceneOf(plant, light ? &*light : nullptr);
   if (transfer) scene.items[0].transfer = &*transfer;
+  std::optional<PlantMotion> motion;
+  if (view.wind.speed > 0.0f) {
+    progress.show("motion");
+    motion = motionFor(plant);
+    scene.items[0].motion = &*motion;
+  }
   view.camera =
       command.cameraFor(scene, static_cast<float>(view.width) / static_cast<float>(view.height));
   progress.show("drawing");
   renderer.setScene(scene);
-  const Frame frame = renderer.render(view);
-  if (view.hdr)
-    writeExr(frame.hdr, command.output);
-  else
-    writePng(frame.image, command.output);
+  if (!command.motion_vectors.empty())
+    view.last = {view.camera, view.wind, view.seconds - 1.0 / command.fps};
+  const Frame frame =
+      frames ? drawFilm(command, *frames, view, renderer, progress) : renderer.render(view);
+  if (!command.motion_vectors.empty()) writeExr(asPicture(frame), command.motion_vectors);
+  if (!frames && view.hdr) writeExr(frame.hdr, command.output);
+  if (!frames && !view.hdr) writePng(frame.image, command.output);
   progress.show("done");
   const std::string light_name = command.light == "best"
                                      ? (transfer ? "best (transfer vectors)" : "best (baked)")
@@ -232,6 +304,7 @@ void runRender(const RenderCommand& command) {
                                       {"height", view.height},
                                       {"bake_seconds", bake_seconds},
                                       {"pack_ms", frame.times.pack_ms},
+                                      {"motion_ms", frame.times.motion_ms},
                                       {"shadow_ms", frame.times.shadow_ms},
                                       {"color_ms", frame.times.color_ms},
                                       {"tone_ms", frame.times.tone_ms},

@@ -1,5 +1,7 @@
 #include "app/scene_options.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "app/commands.h"
@@ -47,6 +49,27 @@ Scene SceneOptions::sceneOf(const Plant& plant, const CrownLight* light) const {
   scene.ground_height = groundHeight(plant);
   scene.items.push_back({&plant, light});
   return scene;
+}
+
+Wind WindOptions::wind(bool film) const {
+  Wind wind;
+  wind.speed = speed.value_or(film || time ? 5.0f : 0.0f);
+  if (!(wind.speed >= 0.0f && wind.speed <= 60.0f))
+    throw Error("--wind", fmt::format("{:g} m/s is out of range", wind.speed), "choose 0 to 60");
+  if (!std::isfinite(from_deg))
+    throw Error("--wind-from", "must be a finite number", "0 is from +Z, 90 from +X");
+  wind.from = radians(from_deg);
+  if (!(gusts >= 0.0f && gusts <= 1.0f))
+    throw Error("--gusts", fmt::format("{:g} is out of range", gusts), "choose 0 to 1");
+  wind.gusts = gusts;
+  if (time && !std::isfinite(*time))
+    throw Error("--time", "must be a finite number", "write seconds, like 2.5");
+  return wind;
+}
+
+PlantMotion motionFor(Plant& plant) {
+  if (plant.branches.empty()) findBranches(plant);
+  return plantMotion(plant);
 }
 
 void restoreLeafNormals(Plant& plant) {

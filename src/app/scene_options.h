@@ -1,8 +1,10 @@
 #ifndef VERDURE_APP_SCENE_OPTIONS_H_
 #define VERDURE_APP_SCENE_OPTIONS_H_
 
+#include <optional>
 #include <string>
 
+#include "verdure/motion.h"
 #include "verdure/plant_io.h"
 #include "verdure/scene.h"
 
@@ -25,6 +27,21 @@ struct SceneOptions {
   /// The plant alone, on the ground unless that is left out.
   Scene sceneOf(const Plant& plant, const CrownLight* light) const;
 };
+
+/// Wind and time; a plant whose motion is asked for moves, others are at rest.
+struct WindOptions {
+  std::optional<float> speed;  ///< unset: 5 m/s if `time` or frames are asked for, else 0
+  float from_deg = 240.0f;
+  float gusts = 0.4f;
+  std::optional<double> time;
+
+  /// Throws Error that names the option. `film`: frames are asked for.
+  Wind wind(bool film) const;
+};
+
+/// A plant's motion, with its branches found first where they are not known. A plant without any
+/// sways as a whole: a note says so.
+PlantMotion motionFor(Plant& plant);
 
 /// A baked file has no leaf normals any more: finds them again from its triangles.
 void restoreLeafNormals(Plant& plant);

@@ -1,4 +1,5 @@
 #include "motion/beam.h"
+#include "motion/large_deflection.h"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +10,7 @@
 
 #include "base/random.h"
 #include "shared/beam.h"
+#include "verdure/error.h"
 
 namespace verdure {
 namespace {
@@ -161,6 +163,43 @@ TEST_P(BentBeam, RestsWithoutForceToTheBit) {
     EXPECT_EQ(shared::posedPoint(pose, p), p);
     EXPECT_EQ(shared::posedVector(pose, p), p);
   }
+}
+
+// The theory of large deflections, solved numerically, against the fit with its length correction.
+TEST(BentBeam, IsNearTheTheoryOfLargeDeflections) {
+  const shared::BeamFrame frame{{0, 0, 0}, 1.0f, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (const double taper : {0.2, 0.5, 1.0})
+    for (const double tip : {0.1, 0.3, 0.5}) {
+      const auto truth = bentBeam(taper, tip, 100);
+      const glm::vec2 fit(fitBeam(taper));
+      const auto at = [&](float amplitude, float x) {
+        const glm::vec3 p = shared::posedPoint(shared::poseOfBeam(frame, fit, x, {amplitude, 0.0f}),
+                                               {x, 0.0f, 0.0f});
+        return glm::dvec2(p.x, p.y);
+      };
+      float low = 0.0f, high = 2.0f / shared::beamDeflection(fit, 1.0f);
+      for (int i = 0; i < 40; ++i) {
+        const float middle = 0.5f * (low + high);
+        (at(middle, 1.0f).y < tip ? low : high) = middle;
+      }
+      double farthest = 0.0;
+      for (std::size_t i = 0; i < truth.size(); ++i)
+        farthest =
+            std::max(farthest, glm::length(truth[i] - at(high, static_cast<float>(i) / 100.0f)));
+      printf("taper %g, tip %g: %.4f\n", taper, tip, farthest);
+      EXPECT_LT(farthest, tip < 0.2 ? 0.004 : tip < 0.4 ? 0.015 : 0.05);
+    }
+}
+
+TEST(BentBeam, IsTheLinearBeamForSmallLoads) {
+  for (const double taper : {0.2, 0.6, 1.0}) {
+    const auto bent = bentBeam(taper, 1e-3, 400);
+    const double scale = 1e-3 / beamDeflectionExact(taper, 1.0);
+    for (std::size_t i = 0; i < bent.size(); ++i) {
+      EXPECT_NEAR(bent[i].y, scale * beamDeflectionExact(taper, bent[i].x), 2e-6) << i;
+    }
+  }
+  EXPECT_THROW(bentBeam(0.5, 0.9), Error);
 }
 
 }  // namespace

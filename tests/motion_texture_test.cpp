@@ -1,4 +1,5 @@
 #include "motion/motion_texture.h"
+#include "motion/spectrum.h"
 
 #include <gtest/gtest.h>
 
@@ -24,45 +25,6 @@ float motionAt(const MotionTexture& texture, const shared::MotionTrajectory& tra
   const MotionTime time = motionTime(seconds);
   return texture.sample(shared::motionUv(trajectory, time.whole, time.fraction), channel);
 }
-
-/// Mean periodogram under Hann's window, at bins 0 to `bins` - 1 of 1 / (count * step) each.
-class Spectrum {
- public:
-  Spectrum(int count, int bins) : power(static_cast<std::size_t>(bins)), count_(count) {
-    for (int i = 0; i < count; ++i) {
-      window_.push_back(0.5 - 0.5 * std::cos(2 * kPi * i / count));
-      turns_.push_back(std::polar(1.0, 2 * kPi * i / count));
-    }
-  }
-  void add(const std::function<double(int i)>& signal) {
-    std::vector<double> values;
-    for (int i = 0; i < count_; ++i)
-      values.push_back(signal(i) * window_[static_cast<std::size_t>(i)]);
-    for (std::size_t bin = 0; bin < power.size(); ++bin) {
-      std::complex<double> sum = 0.0;
-      for (std::size_t i = 0; i < values.size(); ++i)
-        sum += values[i] * turns_[i * bin % values.size()];
-      power[bin] += std::norm(sum);
-    }
-  }
-  /// Sum of the differences to another spectrum, both of sum 1, from bin 1 on.
-  double errorTo(const std::function<double(std::size_t bin)>& truth) const {
-    double sum = 0.0, true_sum = 0.0, error = 0.0;
-    for (std::size_t bin = 1; bin < power.size(); ++bin) {
-      sum += power[bin];
-      true_sum += truth(bin);
-    }
-    for (std::size_t bin = 1; bin < power.size(); ++bin)
-      error += std::abs(power[bin] / sum - truth(bin) / true_sum);
-    return error;
-  }
-  std::vector<double> power;
-
- private:
-  int count_;
-  std::vector<double> window_;
-  std::vector<std::complex<double>> turns_;
-};
 
 /// The vertex of the parabola through the logarithms of the 2 * `reach` + 1 bins about the highest
 /// one, by least squares: a peak that is broader than a bin is noisy.

@@ -84,7 +84,7 @@ struct MotionOptions {
 /// How a branch answers wind; `mean` and `swing` for 1 m/s, growing as the speed's square, in
 /// lengths of the branch.
 struct BranchMotion {
-  float frequency_hz = 0.0f;   ///< (4.20)
+  float frequency_hz = 0.0f;   ///< (4.20), at most 15
   float damping_ratio = 0.0f;  ///< of its level
   float mass_kg = 0.0f;        ///< (4.17): wood and leaves of the branch and all that it carries
   float mean = 0.0f;           ///< the tip's deflection downwind, by the drag of what it carries

@@ -243,6 +243,15 @@ struct FidelityCommand {
 };
 void runFidelityReport(const FidelityCommand& command);
 
+struct MotionReportCommand {
+  std::string input;  ///< empty: a birch is grown
+  std::string output = "motion";
+  std::string size = "320x400";
+  DeviceOptions device;
+  bool json = false;
+};
+void runMotionReport(const MotionReportCommand& command);
+
 // Shared by the commands.
 
 /// bake --population.

@@ -477,6 +477,15 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   fidelity_app->add_flag("--json", fidelity.json, "Print the numbers as JSON");
   addDeviceOptions(*fidelity_app, fidelity.device);
+  MotionReportCommand motion_report;
+  CLI::App* motion_app = report_app->add_subcommand(
+      "motion", "Beams and spectra of trees in wind against theory, and frames of one");
+  motion_app->add_option("file", motion_report.input, "Plant to show (default: a birch is grown)");
+  motion_app->add_option("-o,--output", motion_report.output, "Folder to write")
+      ->capture_default_str();
+  motion_app->add_option("--size", motion_report.size, "WxH of each frame")->capture_default_str();
+  motion_app->add_flag("--json", motion_report.json, "Print the numbers as JSON");
+  addDeviceOptions(*motion_app, motion_report.device);
 
   for (int i = 1; i < argc; ++i)
     if (*argv[i] == '\0')
@@ -498,8 +507,8 @@ int run(int argc, char** argv) {
   if (*figures_app && figures_app->get_subcommands().empty())
     throw Error("figures", "no paper is named",
                 "use luft, gumbau, leaf or sky; see verdure figures --help");
-  if (*report_app && !*fidelity_app)
-    throw Error("report", "nothing is named", "use fidelity; see verdure report --help");
+  if (*report_app && report_app->get_subcommands().empty())
+    throw Error("report", "nothing is named", "use fidelity or motion; see verdure report --help");
   if (*leaf_app && leaf_app->get_subcommands().empty())
     throw Error("leaf", "nothing is named", "use grow, import or bake; see verdure leaf --help");
   for (const CLI::Option* option : render_app->get_options())
@@ -531,6 +540,7 @@ int run(int argc, char** argv) {
   if (*leaf_figures_app) runLeafFigures(leaf_figures);
   if (*habel_app) writeSkyReport(sky_figures);
   if (*fidelity_app) runFidelityReport(fidelity);
+  if (*motion_app) runMotionReport(motion_report);
   return 0;
 }
 

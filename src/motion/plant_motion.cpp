@@ -29,17 +29,13 @@ constexpr double kTurbulence = 0.3;  // root mean square of the wind by its mean
 // Leaves, for wind of 1 m/s: tangents of half the angles.
 constexpr float kLeafFlutter = 0.0040f, kLeafTwist = 0.0055f, kLeafLean = 0.0035f;
 constexpr float kLeafVariation = 0.4f;
-constexpr double kWavesPerLeaf = 4.0;  // the smallest eddy, in leaves
+// Twigs of a few centimetres would tremble faster than any film shows.
+constexpr double kMostFrequency = 15.0;  // Hz
+constexpr double kWavesPerLeaf = 4.0;    // the smallest eddy, in leaves
 constexpr int kWindSize = 512;
 
-float medianFrequency(const MotionTree& tree, int level, bool leafless) {
-  std::vector<double> lengths;
-  for (const MotionBranch& branch : tree.branches)
-    if (branch.level == level) lengths.push_back(double{branch.length});
-  if (lengths.empty()) return 1.0f;
-  std::nth_element(lengths.begin(), lengths.begin() + static_cast<long>(lengths.size() / 2),
-                   lengths.end());
-  return static_cast<float>(branchFrequency(lengths[lengths.size() / 2], leafless));
+double frequencyOf(double length, bool leafless) {
+  return std::min(branchFrequency(length, leafless), kMostFrequency);
 }
 
 /// Root mean square of the response to turbulence, by what a spring without mass would do.
@@ -60,7 +56,7 @@ double amplification(const BranchOscillator& branch) {
 BranchMotion motionOf(const MotionBranch& branch, const MotionOptions& options, bool leafless) {
   BranchMotion motion;
   const double length = double{branch.length}, leaves = double{branch.leaf_m2};
-  motion.frequency_hz = static_cast<float>(branchFrequency(length, leafless));
+  motion.frequency_hz = static_cast<float>(frequencyOf(length, leafless));
   motion.damping_ratio = options.damping_ratio[static_cast<std::size_t>(branch.level)];
   const double mass = std::max(kWoodDensity * double{branch.wood_m3} + kLeafMass * leaves, 1e-6);
   motion.mass_kg = static_cast<float>(mass);
@@ -137,9 +133,9 @@ class TableBuilder {
   TableBuilder(const Plant& plant, const PlantMotion& motion, const MotionOptions& options)
       : plant_(plant), motion_(motion), options_(options) {}
 
-  MotionTables build(bool leafless) {
+  MotionTables build() {
     addBeams();
-    addDrives(leafless);
+    addDrives();
     addLeaves();
     addVertices();
     return std::move(out_);
@@ -165,34 +161,73 @@ class TableBuilder {
     }
   }
 
-  void addDrives(bool leafless) {
-    out_.drives.resize(motion_.tree.branches.size());
-    out_.farthest.resize(motion_.tree.branches.size());
-    for (int level = 0; level < kMotionLevels; ++level) {
-      const auto l = static_cast<std::size_t>(level);
+  /// Levels of one damping ratio share their textures, as many as they are. A branch that reads a
+  /// texture of another resonance scales the wind's spectrum with it, so textures are spread evenly
+  /// over the slope of (4.15) at the branches' resonances, and a branch reads the nearest one.
+  void addDrives() {
+    out_.drives.resize(motion_.branches.size());
+    out_.farthest.resize(motion_.branches.size());
+    std::array<bool, kMotionLevels> done{};
+    for (std::size_t level = 0; level < kMotionLevels; ++level) {
+      if (done[level]) continue;
+      const float damping = options_.damping_ratio[level];
+      std::size_t levels = 0;
       std::vector<std::uint32_t> members;
-      for (std::uint32_t b = 0; b < motion_.tree.branches.size(); ++b)
-        if (motion_.tree.branches[b].level == level) members.push_back(b);
-      if (members.empty()) continue;
-      const BranchOscillator typical{double{medianFrequency(motion_.tree, level, leafless)},
-                                     double{options_.damping_ratio[l]},
-                                     double{options_.spectrum_speed}};
-      MotionTextureOptions size;
-      size.width = options_.texture_width;
-      size.height = options_.texture_height;
-      size.seed = hash(options_.seed) + l;
-      size.layout = options_.thesis_textures ? MotionLayout::kRadial : MotionLayout::kSeparable;
-      const MotionTexture texture = makeMotionTexture(typical, size);
-      const auto first = static_cast<std::uint32_t>(out_.texels.size());
-      const PackedMotionTexture halves = packed(texture);
-      out_.texels.insert(out_.texels.end(), halves.texels.begin(), halves.texels.end());
-      for (const std::uint32_t b : members) {
-        const BranchMotion& motion = motion_.branches[b];
-        out_.farthest[b] = halves.farthest;
-        out_.drives[b] = {
-            makeTrajectory(texture, double{motion.frequency_hz}, hash(options_.seed + 1) + b),
-            first, halves.size.x | halves.size.y << 16, motion.mean, motion.swing};
+      for (std::size_t other = level; other < kMotionLevels; ++other) {
+        if (options_.damping_ratio[other] != damping) continue;
+        done[other] = true;
+        const std::size_t before = members.size();
+        for (std::uint32_t b = 0; b < motion_.branches.size(); ++b)
+          if (motion_.tree.branches[b].level == static_cast<int>(other)) members.push_back(b);
+        levels += members.size() > before ? 1 : 0;
       }
+      if (!members.empty()) addTextures(members, double{damping}, levels);
+    }
+  }
+
+  void addTextures(const std::vector<std::uint32_t>& members, double damping, std::size_t count) {
+    // The slope without its 5/3, [0, 1).
+    const double speed = double{options_.spectrum_speed};
+    const auto slopeOf = [&](std::uint32_t b) {
+      const double frequency = double{motion_.branches[b].frequency_hz};
+      return frequency / (frequency + speed);
+    };
+    double low = 1.0, high = 0.0;
+    for (const std::uint32_t b : members) {
+      low = std::min(low, slopeOf(b));
+      high = std::max(high, slopeOf(b));
+    }
+    const double step = (high - low) / static_cast<double>(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      std::vector<std::uint32_t> near;
+      for (const std::uint32_t b : members) {
+        const auto nearest =
+            step > 0.0 ? std::min(static_cast<std::size_t>((slopeOf(b) - low) / step), count - 1)
+                       : 0;
+        if (nearest == i) near.push_back(b);
+      }
+      if (near.empty()) continue;
+      const double slope = low + (static_cast<double>(i) + 0.5) * step;
+      addTexture(near, {speed * slope / (1.0 - slope), damping, speed});
+    }
+  }
+
+  void addTexture(const std::vector<std::uint32_t>& members, const BranchOscillator& typical) {
+    MotionTextureOptions size;
+    size.width = options_.texture_width;
+    size.height = options_.texture_height;
+    size.seed = hash(options_.seed) + out_.texels.size();
+    size.layout = options_.thesis_textures ? MotionLayout::kRadial : MotionLayout::kSeparable;
+    const MotionTexture texture = makeMotionTexture(typical, size);
+    const auto first = static_cast<std::uint32_t>(out_.texels.size());
+    const PackedMotionTexture halves = packed(texture);
+    out_.texels.insert(out_.texels.end(), halves.texels.begin(), halves.texels.end());
+    for (const std::uint32_t b : members) {
+      const BranchMotion& motion = motion_.branches[b];
+      out_.farthest[b] = halves.farthest;
+      out_.drives[b] = {
+          makeTrajectory(texture, double{motion.frequency_hz}, hash(options_.seed + 1) + b), first,
+          halves.size.x | halves.size.y << 16, motion.mean, motion.swing};
     }
   }
 
@@ -277,7 +312,7 @@ PlantMotion plantMotion(const Plant& plant, const MotionOptions& options) {
     motion.branches.push_back(motionOf(branch, options, leafless));
   motion.leaves = leafMotions(plant, motion.tree);
   motion.tables =
-      std::make_shared<const MotionTables>(TableBuilder(plant, motion, options).build(leafless));
+      std::make_shared<const MotionTables>(TableBuilder(plant, motion, options).build());
   return motion;
 }
 

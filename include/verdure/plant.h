@@ -170,6 +170,14 @@ std::size_t memoryBytes(const Plant& plant);
 /// of threads.
 void findLeaves(Plant& plant);
 
+/// Finds the branches of any plant: fills Plant::branches, Mesh::branch_of_vertex of wood and
+/// Leaf::branch; what they held is lost. A glTF skin's joints are taken as given; other wood is
+/// split by level sets of the distance along its bark, and its pieces hang on what they touch.
+/// Parents come before their children. Foliage without wood is one upright branch; a plant without
+/// vertices has none. Adds a note on what it did. Deterministic for any number of threads. Throws
+/// Error for a skin that names a joint twice. docs/motion.md has the method and its limits.
+void findBranches(Plant& plant);
+
 /// The light of a crown, per vertex of each mesh of the plant it was baked from.
 struct MeshLight {
   std::vector<glm::vec3> normals;  ///< unit

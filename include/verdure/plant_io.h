@@ -56,12 +56,18 @@ struct PartReport {
   bool has_uvs = false;
 };
 
+struct LevelReport {
+  std::size_t branches = 0;
+  double length_m = 0.0;  ///< of all of them along their axes
+};
+
 struct PlantReport {
   std::vector<PartReport> parts;
   Bounds bounds;  ///< relative to origin
   glm::dvec3 origin{0.0};
   std::size_t vertices = 0, triangles = 0, leaves = 0, branches = 0;
   int levels = 0;                       ///< 0 = unknown
+  std::vector<LevelReport> by_level;    ///< of branches, from the trunk on
   double leaf_area_m2 = 0.0;            ///< one side, all leaves
   double mean_leaf_size_m = 0.0;        ///< square root of the mean leaf area
   std::vector<std::string> attributes;  ///< names of vertex attributes in the source document

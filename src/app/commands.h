@@ -55,6 +55,7 @@ void runLeafGrow(const LeafGrowCommand& command);
 struct InspectCommand {
   std::string input;
   LoadOptions load;
+  std::string skeleton;  ///< .obj or .png to write, empty for none
   bool json = false;
 };
 void runInspect(const InspectCommand& command);

@@ -230,6 +230,8 @@ int run(int argc, char** argv) {
   inspect_app->add_option("file", inspect.input, "Plant: .glb .gltf .obj .fbx .dae .ply")
       ->required();
   addLoadOptions(*inspect_app, inspect.load);
+  inspect_app->add_option("--skeleton", inspect.skeleton,
+                          "Write its branches: lines by level, .obj, or a drawing, .png");
   inspect_app->add_flag("--json", inspect.json, "Print JSON");
 
   BakeCommand bake;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/skeleton_file.h"
 #include "base/progress.h"
 #include "verdure/error.h"
 
@@ -74,10 +75,18 @@ void runGrow(GrowCommand command) {
 }
 
 void runInspect(const InspectCommand& command) {
-  const Plant plant = loadPlant(command.input, command.load);
+  if (!command.skeleton.empty()) checkOutput(command.skeleton, {".obj", ".png"});
+  Plant plant = loadPlant(command.input, command.load);
+  Timer timer;
+  const bool known = !plant.branches.empty();
+  if (!known) findBranches(plant);
+  const double seconds = timer.lap();
   const PlantReport report = inspectPlant(plant);
+  if (!command.skeleton.empty()) writeSkeleton(plant, command.skeleton);
   if (command.json) {
-    fmt::print("{}\n", jsonOf(report));
+    Json json = Json::parse(jsonOf(report));
+    json["seconds_branches"] = seconds;
+    fmt::print("{}\n", json.dump(2));
     return;
   }
   const glm::vec3 size = report.bounds.size();
@@ -89,10 +98,11 @@ void runInspect(const InspectCommand& command) {
   fmt::print("  vertices  {}\n  triangles {}\n", report.vertices, report.triangles);
   fmt::print("  leaves    {} (mean size {:.3g} m, {:.4g} m^2 in all, one side)\n", report.leaves,
              report.mean_leaf_size_m, report.leaf_area_m2);
-  if (report.branches > 0)
-    fmt::print("  branches  {} in {} levels\n", report.branches, report.levels);
-  else
-    fmt::print("  branches  unknown\n");
+  fmt::print("  branches  {} in {} levels, {}\n", report.branches, report.levels,
+             known ? "known" : "found");
+  for (std::size_t level = 0; level < report.by_level.size(); ++level)
+    fmt::print("    level {}: {}, {:.4g} m in all\n", level, report.by_level[level].branches,
+               report.by_level[level].length_m);
   fmt::print("  parts\n");
   for (const PartReport& part : report.parts)
     fmt::print("    {:8} {} (material {}): {} vertices, {} triangles{}{}\n", kindName(part.kind),
@@ -119,6 +129,9 @@ std::string jsonOf(const PlantReport& r) {
                      {"triangles", part.triangles},
                      {"leaves", part.leaves},
                      {"uvs", part.has_uvs}});
+  Json levels = Json::array();
+  for (const LevelReport& level : r.by_level)
+    levels.push_back({{"branches", level.branches}, {"length_m", level.length_m}});
   const auto vector = [](const auto& v) { return Json::array({v.x, v.y, v.z}); };
   const Json json = {{"bounds", {{"min", vector(r.bounds.min)}, {"max", vector(r.bounds.max)}}},
                      {"origin", vector(r.origin)},
@@ -129,6 +142,7 @@ std::string jsonOf(const PlantReport& r) {
                      {"mean_leaf_size_m", r.mean_leaf_size_m},
                      {"branches", r.branches},
                      {"levels", r.levels},
+                     {"branches_by_level", levels},
                      {"parts", parts},
                      {"attributes", r.attributes},
                      {"notes", r.notes},

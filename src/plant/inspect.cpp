@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plant/axis_fit.h"
 #include "plant/gltf_document.h"
 #include "plant/load.h"
 
@@ -57,8 +58,13 @@ PlantReport inspectPlant(const Plant& plant) {
   report.triangles = triangleCount(plant);
   report.leaves = plant.leaves.size();
   report.branches = plant.branches.size();
-  for (const Branch& branch : plant.branches)
-    report.levels = std::max(report.levels, branch.level + 1);
+  for (const Branch& branch : plant.branches) {
+    const auto level = static_cast<std::size_t>(branch.level);
+    report.by_level.resize(std::max(report.by_level.size(), level + 1));
+    ++report.by_level[level].branches;
+    report.by_level[level].length_m += static_cast<double>(axisLength(branch.points));
+  }
+  report.levels = static_cast<int>(report.by_level.size());
   std::vector<std::size_t> leaves_of(plant.meshes.size(), 0);
   for (const Leaf& leaf : plant.leaves) {
     report.leaf_area_m2 += static_cast<double>(leaf.area);

@@ -57,7 +57,8 @@ std::string windRecords(const Plant& plant, const PlantMotion& motion,
        {{"trunk", digits(quantities.largest().tree)},
         {"branches", digits(quantities.largest().branch)},
         {"all", digits(quantities.largest().sway)}}},
-      {"leaves", motion.leaves.size()}};
+      {"leaves", motion.leaves.size()},
+      {"notes", plant.notes}};
   std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
   text.resize(text.rfind('}') - 1);
   text += ",\n  \"branches\": [";

@@ -65,6 +65,13 @@ bool liesAmongMeshes(const Plant& plant, const glm::dvec3& offset) {
   return true;
 }
 
+const Json* stemsOf(const GltfDocument& document) {
+  const Json* json = member(document.json, "asset");
+  for (const char* key : {"extras", "verdure", "stems"})
+    if (json != nullptr) json = member(*json, key);
+  return json;
+}
+
 }  // namespace
 
 std::vector<std::vector<float>> stemIds(const Plant& plant) {
@@ -114,10 +121,12 @@ void writeStems(const Plant& plant, GltfDocument& document) {
                                 {"stems", add(stems)}};
 }
 
+bool namesStems(const GltfDocument& document) {
+  return stemsOf(document) != nullptr;
+}
+
 void readStems(const GltfDocument& document, Plant& plant, glm::dvec3& origin) {
-  const Json* json = member(document.json, "asset");
-  for (const char* key : {"extras", "verdure", "stems"})
-    if (json != nullptr) json = member(*json, key);
+  const Json* const json = stemsOf(document);
   if (json == nullptr) return;
   try {
     plant.branches = branchesOf(document, *json, origin);

@@ -20,6 +20,9 @@ std::vector<std::vector<float>> stemIds(const Plant& plant);
 /// Replaces the document's stems by the plant's, if it has any.
 void writeStems(const Plant& plant, GltfDocument& document);
 
+/// Whether the document says that it has stems. `_STEM_ID` means nothing without.
+bool namesStems(const GltfDocument& document);
+
 /// Fills Plant::branches, relative to `origin`, if the document has any that are whole.
 void readStems(const GltfDocument& document, Plant& plant, glm::dvec3& origin);
 

@@ -417,6 +417,11 @@ TEST_F(WindFilesTest, AGrownPlantKeepsItsBranchesInItsFile) {
   for (std::size_t l = 0; l < back.leaves.size(); ++l)
     if (back.leaves[l].branch == plant_->leaves[l].branch) ++same;
   EXPECT_EQ(same, back.leaves.size());
+  double off = 0.0;
+  for (std::size_t l = 0; l < back.leaves.size(); ++l)
+    off =
+        std::max(off, double{glm::length(back.leaves[l].stalk - plant_->leaves[l].stalk - moved)});
+  EXPECT_LT(off, 1e-3);  // far from the origin
   const MotionTree was = motionTree(*plant_), is = motionTree(back);
   ASSERT_EQ(is.branches.size(), was.branches.size());
   for (std::size_t b = 0; b < is.branches.size(); ++b) {
@@ -446,6 +451,7 @@ TEST_F(WindFilesTest, BranchesThatDoNotFitAreLeftOut) {
       [](Json& stems) { stems["stems"] = stems["points"]; },
       [](Json& stems) { stems["points"] = stems["stems"]; },
       [](Json& stems) { stems["points"] = 100000; },
+      [](Json& stems) { stems["stalks"] = stems["points"]; },
       [](Json& stems) { stems.erase("points"); },
       [](Json& stems) {
         stems["origin"] = {5000, 0, 0};

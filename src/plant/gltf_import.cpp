@@ -90,7 +90,7 @@ class GltfImporter {
     if (default_material_ >= 0) plant().notes.push_back("parts without a material are white");
     decodeTextures();
     noteUnread();
-    readStems(document_, plant(), raw_.branch_origin);
+    raw_.stems = readStems(document_, plant().notes);
     plant().source = source_;
     return std::move(raw_);
   }

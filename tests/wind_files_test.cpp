@@ -431,6 +431,7 @@ TEST_F(WindFilesTest, AGrownPlantKeepsItsBranchesInItsFile) {
   // And once more, from the exported file.
   exportWind(back, plantMotion(back, smallTextures()), "attributes", dir / "again.glb");
   EXPECT_EQ(loadPlant(dir / "again.glb").branches.size(), plant_->branches.size());
+  EXPECT_EQ(glbJson(dir / "again.glb")["asset"], glbJson(dir / "oak.glb")["asset"]);
 }
 
 TEST_F(WindFilesTest, BranchesThatDoNotFitAreLeftOut) {

@@ -124,6 +124,8 @@ std::vector<std::vector<float>> stemIds(const Plant& plant) {
 
 void writeStems(const Plant& plant, GltfDocument& document) {
   if (plant.branches.empty()) return;
+  std::vector<std::string> notes;
+  if (readStems(document, notes).branches.size() == plant.branches.size()) return;  // its own
   std::vector<glm::vec4> points, stems;
   for (const Branch& branch : plant.branches) {
     stems.emplace_back(branch.parent == kNone ? -1.0f : static_cast<float>(branch.parent),

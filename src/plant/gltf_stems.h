@@ -18,7 +18,7 @@ inline constexpr const char* kStemId = "_STEM_ID";
 /// For each mesh and vertex; empty for a plant without branches.
 std::vector<std::vector<float>> stemIds(const Plant& plant);
 
-/// Replaces the document's stems by the plant's, if it has any.
+/// Writes the plant's stems, if it has any, unless the document has them.
 void writeStems(const Plant& plant, GltfDocument& document);
 
 /// Whether the document says that it has stems. `_STEM_ID` means nothing without.

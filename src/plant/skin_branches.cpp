@@ -144,6 +144,18 @@ class SkinReader {
     joint.radius = off[off.size() / 2];
   }
 
+  /// Where the last joint of a branch ends: the middle of the wood that is farthest along.
+  static glm::vec3 tailOf(const Joint& joint) {
+    glm::vec3 sum(0.0f);
+    float count = 0.0f;
+    for (const glm::vec3& p : joint.wood)
+      if (glm::dot(p - joint.head, joint.way) >= 0.85f * joint.length) {
+        sum += p;
+        ++count;
+      }
+    return count > 0.0f ? sum / count : joint.head;
+  }
+
   /// The joint with which a branch goes on, kNone if it ends.
   std::uint32_t nextOf(const Joint& joint) const {
     float reach = joint.length;
@@ -191,7 +203,7 @@ class SkinReader {
         wood.insert(wood.end(), joints_[j].wood.begin(), joints_[j].wood.end());
       }
       const Joint& end = joints_[last];
-      branch.points.push_back({end.head + end.length * end.way, 0.0f});
+      branch.points.push_back({tailOf(end), 0.0f});
       std::vector<std::pair<float, float>> samples;
       for (const glm::vec3& p : wood) samples.push_back(placeOnAxis(branch.points, p));
       fitRadii(std::move(samples), branch.points);

@@ -18,6 +18,7 @@ namespace {
 constexpr float kLeastThickness = 0.45f, kLeastCosine = 0.34f, kLeastReach = 0.7f;
 
 struct Joint {
+  std::string name;
   std::uint32_t parent = kNone;
   std::vector<std::uint32_t> children;
   glm::vec3 head{0.0f}, way{0.0f};  ///< way: unit, or 0 if unknown
@@ -98,7 +99,8 @@ class SkinReader {
       if (!joint_of_node.emplace(node, static_cast<std::uint32_t>(joints_.size())).second)
         document_.fail(fmt::format("{} names joint {} twice", who,
                                    document_.label("nodes", "node", node)));
-      joints_.emplace_back().head =
+      joints_.emplace_back().name = readString(document_.list("nodes")[node], "name");
+      joints_.back().head =
           glm::vec3(glm::dvec3(scene_.world_from_node[node][3]) - plant_.origin);
     }
     for (const auto& [node, j] : joint_of_node)
@@ -107,8 +109,13 @@ class SkinReader {
           joints_[j].parent = above->second;
           break;
         }
-    for (std::uint32_t j = 0; j < joints_.size(); ++j)
-      if (joints_[j].parent != kNone) joints_[joints_[j].parent].children.push_back(j);
+    named_ = false;
+    for (std::uint32_t j = 0; j < joints_.size(); ++j) {
+      const std::uint32_t parent = joints_[j].parent;
+      if (parent == kNone) continue;
+      joints_[parent].children.push_back(j);
+      named_ = named_ || followsByName(joints_[parent].name, joints_[j].name);
+    }
   }
 
   /// Parents before children; readScene has refused cycles.
@@ -156,8 +163,26 @@ class SkinReader {
     return count > 0.0f ? sum / count : joint.head;
   }
 
+  /// Whether names say that b follows on a: "bough.002" on "bough.001".
+  static bool followsByName(const std::string& a, const std::string& b) {
+    const auto split = [](const std::string& name) {
+      const std::size_t stem = name.find_last_not_of("0123456789") + 1;
+      const std::string digits = name.substr(std::min(stem, name.size()));
+      const bool number = !digits.empty() && digits.size() < 9;
+      return std::pair(name.substr(0, stem), number ? std::stol(digits) : -2L);
+    };
+    const auto [stem_a, number_a] = split(a);
+    const auto [stem_b, number_b] = split(b);
+    return stem_a == stem_b && number_b == number_a + 1 && number_a >= 0;
+  }
+
   /// The joint with which a branch goes on, kNone if it ends.
   std::uint32_t nextOf(const Joint& joint) const {
+    if (named_) {
+      for (const std::uint32_t c : joint.children)
+        if (joints_[c].used && followsByName(joint.name, joints_[c].name)) return c;
+      return kNone;
+    }
     float reach = joint.length;
     if (joint.wood.empty())
       for (const std::uint32_t c : joint.children)
@@ -222,6 +247,7 @@ class SkinReader {
   const GltfScene& scene_;
   std::vector<std::size_t> parent_of_;  ///< of nodes; their number for none
   std::vector<Joint> joints_;
+  bool named_ = false;  ///< names say which joints are one branch
   std::vector<std::uint32_t> order_, branch_of_;
 };
 

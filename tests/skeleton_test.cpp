@@ -13,165 +13,20 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "base/files.h"
 #include "base/parallel.h"
+#include "branch_checks.h"
+#include "gltf_builder.h"
 #include "plant/axis_fit.h"
-#include "plant/axis_tree.h"
+#include "plant/weld.h"
+#include "scratch.h"
+#include "verdure/error.h"
 #include "verdure/grow.h"
-#include "verdure/motion.h"
 #include "verdure/plant_io.h"
 
 namespace verdure {
 namespace {
 namespace fs = std::filesystem;
-
-/// How much of the true branches was found, by length.
-struct Agreement {
-  double found = 0.0;        ///< share that belongs to a branch of its own
-  double parents = 0.0;      ///< share of branches with the right parent
-  double radii = 0.0;        ///< share where the radius is within 15 %
-  double radius_rms = 0.0;   ///< of radii, relative
-  double axes = 0.0;         ///< mean distance of axes, in radii
-  std::size_t extra = 0;     ///< branches that are none
-};
-
-void print(const std::string& name, const Agreement& a) {
-  std::printf("%-28s found %.4f parents %.4f radii %.4f (rms %.3f) axes %.3f r, extra %zu\n",
-              name.c_str(), a.found, a.parents, a.radii, a.radius_rms, a.axes, a.extra);
-}
-
-double lengthOf(const Branch& b) { return static_cast<double>(axisLength(b.points)); }
-
-/// `match`: the found branch of each true one, kNone: not found.
-Agreement agreement(const std::vector<Branch>& truth, const std::vector<Branch>& found,
-                    const std::vector<std::uint32_t>& match) {
-  Agreement result;
-  double all = 0.0, measured = 0.0, squares = 0.0;
-  std::vector<bool> used(found.size(), false);
-  for (std::size_t t = 0; t < truth.size(); ++t) {
-    const double length = lengthOf(truth[t]);
-    all += length;
-    if (match[t] == kNone) continue;
-    used[match[t]] = true;
-    result.found += length;
-    const std::uint32_t parent = found[match[t]].parent;
-    if (truth[t].parent == kNone ? parent == kNone
-                                 : parent != kNone && match[truth[t].parent] == parent)
-      result.parents += length;
-    // Sixteen places a branch, its root within the parent left out.
-    const std::vector<BranchPoint>& axis = truth[t].points;
-    const float thick = axis.front().radius;
-    for (int k = 0; k < 16; ++k) {
-      const float along = static_cast<float>(length) * (static_cast<float>(k) + 0.5f) / 16.0f;
-      const float radius = std::max(radiusOnAxis(axis, along), 0.1f * thick);
-      const auto place = placeOnAxis(found[match[t]].points, pointOnAxis(axis, along));
-      const float other = radiusOnAxis(found[match[t]].points, place.first);
-      const double error = std::abs(other - radiusOnAxis(axis, along)) / radius;
-      measured += length;
-      squares += length * error * error;
-      if (error <= 0.15) result.radii += length;
-      result.axes += length * static_cast<double>(place.second / radius);
-    }
-  }
-  result.found /= all;
-  result.parents /= all;
-  if (measured > 0.0) {
-    result.radii /= measured;
-    result.axes /= measured;
-    result.radius_rms = std::sqrt(squares / measured);
-  }
-  result.extra = static_cast<std::size_t>(std::count(used.begin(), used.end(), false));
-  return result;
-}
-
-/// One true branch for each found one and the other way round: those that share most.
-std::vector<std::uint32_t> matchOf(
-    std::size_t truths, std::size_t founds,
-    const std::map<std::pair<std::uint32_t, std::uint32_t>, double>& shared) {
-  std::vector<std::uint32_t> best_found(truths, kNone), best_truth(founds, kNone);
-  std::vector<double> most_found(truths, 0.0), most_truth(founds, 0.0);
-  for (const auto& [pair, weight] : shared) {
-    const auto [t, f] = pair;
-    if (weight > most_found[t]) {
-      most_found[t] = weight;
-      best_found[t] = f;
-    }
-    if (weight > most_truth[f]) {
-      most_truth[f] = weight;
-      best_truth[f] = t;
-    }
-  }
-  for (std::uint32_t t = 0; t < truths; ++t)
-    if (best_found[t] != kNone && best_truth[best_found[t]] != t) best_found[t] = kNone;
-  return best_found;
-}
-
-std::vector<std::uint32_t> matchByVertices(const Plant& truth, const Plant& found) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, double> shared;
-  for (std::size_t m = 0; m < truth.meshes.size(); ++m)
-    for (std::size_t v = 0; v < truth.meshes[m].branch_of_vertex.size(); ++v)
-      shared[{truth.meshes[m].branch_of_vertex[v], found.meshes[m].branch_of_vertex[v]}] += 1.0;
-  return matchOf(truth.branches.size(), found.branches.size(), shared);
-}
-
-/// By the axes alone: the found branch that most of a true one runs along.
-std::vector<std::uint32_t> matchByAxes(const std::vector<Branch>& truth,
-                                       const std::vector<Branch>& found) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, double> shared;
-  const AxisTree axes(found);
-  for (std::uint32_t t = 0; t < truth.size(); ++t) {
-    const float length = axisLength(truth[t].points);
-    for (int k = 4; k < 32; ++k) {  // roots lie within the parent
-      const glm::vec3 p =
-          pointOnAxis(truth[t].points, length * (static_cast<float>(k) + 0.5f) / 32.0f);
-      AxisHit nearest;
-      for (const AxisHit& hit : axes.within(p, 0.05f * length))
-        if (nearest.branch == kNone || hit.distance < nearest.distance) nearest = hit;
-      if (nearest.branch != kNone)
-        shared[{t, nearest.branch}] += static_cast<double>(length);
-    }
-  }
-  return matchOf(truth.size(), found.size(), shared);
-}
-
-// --- what always holds
-
-void expectTree(const Plant& plant) {
-  const std::size_t count = plant.branches.size();
-  ASSERT_GT(count, 0u);
-  for (std::uint32_t b = 0; b < count; ++b) {
-    const Branch& branch = plant.branches[b];
-    ASSERT_GE(branch.points.size(), 2u);
-    if (branch.parent == kNone) {
-      ASSERT_EQ(branch.level, 0);
-    } else {
-      ASSERT_LT(branch.parent, b);
-      ASSERT_EQ(branch.level, plant.branches[branch.parent].level + 1);
-    }
-    ASSERT_GE(branch.parent_offset, 0.0f);
-    ASSERT_LE(branch.parent_offset, 1.0f);
-    for (const BranchPoint& p : branch.points) {
-      ASSERT_TRUE(std::isfinite(p.position.x + p.position.y + p.position.z));
-      ASSERT_GE(p.radius, 0.0f);
-      ASSERT_TRUE(std::isfinite(p.radius));
-    }
-  }
-  for (const Mesh& mesh : plant.meshes) {
-    if (mesh.kind != PartKind::kWood) continue;
-    ASSERT_EQ(mesh.branch_of_vertex.size(), mesh.positions.size());
-    for (const std::uint32_t b : mesh.branch_of_vertex) ASSERT_LT(b, count);
-  }
-  for (const Leaf& leaf : plant.leaves) ASSERT_LT(leaf.branch, count);
-  const MotionTree tree = motionTree(plant);
-  for (std::size_t m = 0; m < plant.meshes.size(); ++m)
-    for (const VertexMotion& v : tree.meshes[m]) {
-      ASSERT_LT(v.branch, tree.branches.size());
-      for (int k = 0; k < 4; ++k) ASSERT_TRUE(v.places[k] >= 0.0f && v.places[k] <= 1.0f);
-    }
-  for (const MotionBranch& beam : tree.branches) {
-    ASSERT_GT(beam.length, 0.0f);
-    ASSERT_TRUE(std::isfinite(beam.fit.x + beam.fit.y + beam.wood_m3));
-  }
-}
 
 // --- plants that were grown here
 
@@ -207,8 +62,8 @@ TEST_P(FoundIn, WhatHasGrown) {
   const auto match = matchByVertices(truth, plant);
   for (std::size_t l = 0; l < truth.leaves.size(); ++l)
     leaves += match[truth.leaves[l].branch] == plant.leaves[l].branch ? 1 : 0;
-  const double on_theirs =
-      static_cast<double>(leaves) / static_cast<double>(std::max<std::size_t>(1, truth.leaves.size()));
+  const double on_theirs = static_cast<double>(leaves) /
+                           static_cast<double>(std::max<std::size_t>(1, truth.leaves.size()));
   std::printf("%-28s leaves on their branch %.4f\n", "", on_theirs);
   EXPECT_GE(a.parents, 0.95);
   EXPECT_GE(a.radii, 0.95);
@@ -263,11 +118,13 @@ Mesh tube(const std::function<glm::vec3(float)>& curve, const std::function<floa
       mesh.normals.push_back(n);
     }
   }
-  const auto at = [sides](int i, int s) { return static_cast<std::uint32_t>(i * sides + s % sides); };
+  const auto at = [sides](int i, int s) {
+    return static_cast<std::uint32_t>(i * sides + s % sides);
+  };
   for (int i = 0; i < rings; ++i)
     for (int s = 0; s < sides; ++s)
-      for (const std::uint32_t v : {at(i, s), at(i, s + 1), at(i + 1, s + 1), at(i, s),
-                                    at(i + 1, s + 1), at(i + 1, s)})
+      for (const std::uint32_t v :
+           {at(i, s), at(i, s + 1), at(i + 1, s + 1), at(i, s), at(i + 1, s + 1), at(i + 1, s)})
         mesh.indices.push_back(v);
   return mesh;
 }
@@ -309,7 +166,8 @@ TEST(FindBranches, FollowsACurve) {
     return glm::vec3(2 - 2 * std::cos(a), 2 * std::sin(a), 0);
   };
   for (const int rings : {12, 60, 400}) {
-    Plant plant = plantOf({tube(curve, [](float t) { return 0.2f - 0.15f * t; }, rings, 12)});
+    Plant plant = plantOf({tube(
+        curve, [](float t) { return 0.2f - 0.15f * t; }, rings, 12)});
     findBranches(plant);
     ASSERT_EQ(plant.branches.size(), 1u);
     const std::vector<BranchPoint>& axis = plant.branches[0].points;
@@ -323,9 +181,7 @@ TEST(FindBranches, FollowsACurve) {
   }
 }
 
-/// One closed surface: a smooth union of capsules by marching tetrahedra would need a mesher; here
-/// three tubes share the vertices of a fork's rim. The trunk's last ring has 2n points; each arm
-/// begins with one half of it and a seam of n - 1 points across.
+/// One surface: a trunk whose last ring is cut in halves by a seam across, and an arm on each half.
 Plant fork(float thick, float thin) {
   constexpr int kSides = 16, kHalf = kSides / 2;
   Mesh mesh;
@@ -346,13 +202,12 @@ Plant fork(float thick, float thin) {
         mesh.indices.push_back(v);
     }
   };
-  std::vector<std::uint32_t> below, foot;
+  std::vector<std::uint32_t> below;
   for (int i = 0; i <= 8; ++i) {
     const auto next = ring({0, 0.25f * static_cast<float>(i), 0}, {0.2f, 0, 0}, {0, 0, 0.2f});
     if (i > 0) connect(below, next);
     below = next;
   }
-  // The seam from point kHalf over the middle to point 0... its points are between them.
   std::vector<std::uint32_t> seam;
   for (int s = 1; s < kHalf; ++s) {
     seam.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
@@ -367,12 +222,12 @@ Plant fork(float thick, float thin) {
       low.push_back(seam[static_cast<std::size_t>(front ? kHalf - 1 - s : s - 1)]);
     const glm::vec3 t = glm::normalize(way);
     const glm::vec3 a = front ? glm::vec3(1, 0, 0) : glm::vec3(-1, 0, 0);
-    const glm::vec3 b = front ? glm::cross(a, t) : glm::cross(a, t);
+    const glm::vec3 b = glm::cross(a, t);
     for (int i = 1; i <= 12; ++i) {
       const float radius = base * (1 - 0.06f * static_cast<float>(i));
-      const auto next = ring(glm::vec3(0, 2.1f, front ? 0.1f : -0.1f) +
-                                 way * (static_cast<float>(i) / 12.0f),
-                             radius * a, radius * b);
+      const auto next =
+          ring(glm::vec3(0, 2.1f, front ? 0.1f : -0.1f) + way * (static_cast<float>(i) / 12.0f),
+               radius * a, radius * b);
       connect(low, next);
       low = next;
     }
@@ -391,8 +246,10 @@ TEST(FindBranches, SplitsAFork) {
   EXPECT_EQ(plant.branches[1].parent, 0u);
   // The thick and straight arm goes on as the trunk.
   EXPECT_LT(plant.branches[0].points.front().position.y, 0.01f);
-  EXPECT_LT(glm::length(plant.branches[0].points.back().position - glm::vec3(0, 4.1f, -0.4f)), 0.02f);
-  EXPECT_LT(glm::length(plant.branches[1].points.back().position - glm::vec3(0, 3.7f, 1.3f)), 0.02f);
+  EXPECT_LT(glm::length(plant.branches[0].points.back().position - glm::vec3(0, 4.1f, -0.4f)),
+            0.02f);
+  EXPECT_LT(glm::length(plant.branches[1].points.back().position - glm::vec3(0, 3.7f, 1.3f)),
+            0.02f);
   // The other leaves it where the arms part.
   const glm::vec3 root = plant.branches[1].points.front().position;
   EXPECT_LT(placeOnAxis(plant.branches[0].points, root).second, 1e-3f);
@@ -409,8 +266,8 @@ Plant tubes() {
     const glm::vec3 out(std::cos(turn), 0.5f, std::sin(turn));
     const glm::vec3 root(0, 1.5f + 0.8f * static_cast<float>(i), 0);
     meshes.push_back(cone(root, root + 2.0f * out, 0.08f, 0.01f, 6, 8));
-    meshes.push_back(cone(root + 1.2f * out, root + 1.2f * out + glm::vec3(0.1f, 0.9f, 0), 0.03f,
-                          0.004f, 4, 5));
+    meshes.push_back(
+        cone(root + 1.2f * out, root + 1.2f * out + glm::vec3(0.1f, 0.9f, 0), 0.03f, 0.004f, 4, 5));
   }
   return plantOf(std::move(meshes));
 }
@@ -505,9 +362,15 @@ TEST(FindBranches, NeverFailsOnScraps) {
   card.indices = {0, 1, 2, 1, 3, 2};
   Mesh foliage = card;
   foliage.kind = PartKind::kFoliage;
-  for (const std::vector<Mesh>& meshes : std::vector<std::vector<Mesh>>{
-           {triangle}, {point}, {line}, {card}, {foliage}, {foliage, point}, {foliage, card},
-           {triangle, point, line, card, foliage}}) {
+  for (const std::vector<Mesh>& meshes :
+       std::vector<std::vector<Mesh>>{{triangle},
+                                      {point},
+                                      {line},
+                                      {card},
+                                      {foliage},
+                                      {foliage, point},
+                                      {foliage, card},
+                                      {triangle, point, line, card, foliage}}) {
     Plant plant = plantOf(meshes);
     findBranches(plant);
     expectTree(plant);
@@ -535,6 +398,108 @@ TEST(FindBranches, LetsFoliageWithoutWoodSwayAsAWhole) {
   EXPECT_EQ(std::count_if(plant.notes.begin(), plant.notes.end(),
                           [](const std::string& n) { return n.starts_with("branches: "); }),
             1);
+}
+
+// --- skins
+
+/// A trunk of four joints and a bough of two on its third, each joint with a piece of tube.
+GltfBuilder riggedTree(bool named) {
+  GltfBuilder file;
+  Mesh wood;
+  std::vector<std::uint16_t> joints;
+  const auto piece = [&](std::uint16_t joint, const glm::vec3& from, const glm::vec3& to, float r,
+                         float s) {
+    const Mesh part = cone(from, to, r, s, 2, 8);
+    const auto first = static_cast<std::uint32_t>(wood.positions.size());
+    for (const std::uint32_t i : part.indices) wood.indices.push_back(first + i);
+    wood.positions.insert(wood.positions.end(), part.positions.begin(), part.positions.end());
+    for (std::size_t v = 0; v < part.positions.size(); ++v)
+      joints.insert(joints.end(), {joint, 0, 0, 0});
+  };
+  for (int j = 0; j < 4; ++j) {
+    const auto y = static_cast<float>(j);
+    piece(static_cast<std::uint16_t>(j), {0, y, 0}, {0, y + 1, 0}, 0.2f - 0.04f * y,
+          0.16f - 0.04f * y);
+  }
+  piece(4, {0, 2.5f, 0}, {1, 3, 0}, 0.08f, 0.05f);
+  piece(5, {1, 3, 0}, {2, 3.5f, 0}, 0.05f, 0.02f);
+  const std::vector<glm::vec4> weights(wood.positions.size(), glm::vec4(1, 0, 0, 0));
+  const Json attributes = {
+      {"POSITION", file.floats(wood.positions)},
+      {"JOINTS_0", file.accessor(file.view(joints), 5123, weights.size(), "VEC4")},
+      {"WEIGHTS_0", file.floats(weights)}};
+  file.mesh(Json{{"attributes", attributes}, {"indices", file.indices(wood.indices)}}, "bark");
+  file.node({{"mesh", 0}, {"skin", 0}});
+  std::vector<float> inverse_bind;
+  const glm::vec3 heads[] = {{0, 0, 0}, {0, 1, 0}, {0, 2, 0}, {0, 3, 0}, {0, 2.5f, 0}, {1, 3, 0}};
+  const int parents[] = {-1, 0, 1, 2, 2, 4};
+  const char* names[] = {"stem.000", "stem.001", "stem.002", "stem.003", "bough.000", "bough.001"};
+  for (int j = 0; j < 6; ++j) {
+    const glm::vec3 off = heads[j] - (parents[j] < 0 ? glm::vec3(0) : heads[parents[j]]);
+    Json node = {{"translation", {off.x, off.y, off.z}}};
+    if (named) node["name"] = names[j];
+    file.node(node, j == 0);
+    if (parents[j] >= 0) file.json["nodes"][1 + parents[j]]["children"].push_back(1 + j);
+    for (int i = 0; i < 16; ++i)
+      inverse_bind.push_back(i % 5 == 0 ? 1.0f : i >= 12 && i < 15 ? -heads[j][i - 12] : 0.0f);
+  }
+  const int matrices = file.accessor(file.view(inverse_bind), 5126, 6, "MAT4");
+  file.json["skins"] =
+      Json::array({{{"joints", {1, 2, 3, 4, 5, 6}}, {"inverseBindMatrices", matrices}}});
+  return file;
+}
+
+Plant loaded(const GltfBuilder& file) {
+  const fs::path path = scratchFolder("skeleton") / "rigged.glb";
+  writeFile(path, file.glb());
+  LoadOptions options;
+  options.wood = {"bark"};
+  return loadPlant(path, options);
+}
+
+TEST(FindBranches, TakesASkinsJoints) {
+  for (const bool named : {true, false}) {
+    Plant plant = loaded(riggedTree(named));
+    findBranches(plant);
+    expectTree(plant);
+    ASSERT_EQ(plant.branches.size(), 2u) << named;
+    EXPECT_LT(glm::length(plant.branches[0].points.back().position - glm::vec3(0, 4, 0)), 1e-4f);
+    EXPECT_LT(glm::length(plant.branches[1].points.back().position - glm::vec3(2, 3.5f, 0)), 1e-4f);
+    EXPECT_EQ(plant.branches[1].parent, 0u);
+    EXPECT_NEAR(plant.branches[1].parent_offset, 2.5f / 4, 1e-3f);
+    EXPECT_NEAR(radiusOnAxis(plant.branches[0].points, 2.0f), 0.12f, 0.01f);
+    EXPECT_NEAR(radiusOnAxis(plant.branches[1].points, 1.1f), 0.05f, 0.01f);
+    const std::vector<std::uint32_t>& of = plant.meshes[0].branch_of_vertex;
+    for (std::size_t v = 0; v < of.size(); ++v) ASSERT_EQ(of[v], v < 96 ? 0u : 1u);
+    EXPECT_NE(plant.notes.back().find("skin"), std::string::npos);
+  }
+}
+
+TEST(FindBranches, RefusesSkinsThatMakeNoSense) {
+  GltfBuilder twice = riggedTree(true);
+  twice.json["skins"][0]["joints"] = {1, 2, 3, 4, 5, 5};
+  Plant plant = loaded(twice);
+  try {
+    findBranches(plant);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("twice"), std::string::npos) << e.what();
+  }
+  GltfBuilder circle = riggedTree(true);
+  circle.json["nodes"][4]["children"] = {1};
+  EXPECT_THROW(loaded(circle), Error);
+  GltfBuilder beyond = riggedTree(true);
+  beyond.json["skins"][0]["joints"] = {1, 2, 3, 4, 5, 99};
+  EXPECT_THROW(loaded(beyond), Error);
+  GltfBuilder few = riggedTree(true);  // vertices name joints that the skin has not
+  few.json["skins"][0]["joints"] = {1, 2, 3};
+  EXPECT_THROW(loaded(few), Error);
+  GltfBuilder bare = riggedTree(true);  // without weights: by the bark
+  bare.json["meshes"][0]["primitives"][0]["attributes"].erase("JOINTS_0");
+  Plant other = loaded(bare);
+  findBranches(other);
+  expectTree(other);
+  EXPECT_NE(other.notes.back().find("bark"), std::string::npos);
 }
 
 // --- foreign plants
@@ -575,6 +540,21 @@ class SkeletonOf : public testing::Test {
   fs::path dir_;
 };
 
+/// The true branch of each vertex of bark: piece i of the file, by first vertex, is spline i.
+/// Nothing if there are not as many pieces as splines.
+std::vector<std::uint32_t> splineOfVertex(const Mesh& bark, std::size_t splines) {
+  DisjointSets pieces(bark.positions.size());
+  for (std::size_t i = 0; i < bark.indices.size(); i += 3) {
+    pieces.join(bark.indices[i], bark.indices[i + 1]);
+    pieces.join(bark.indices[i], bark.indices[i + 2]);
+  }
+  std::vector<std::uint32_t> spline(bark.positions.size());
+  std::uint32_t next = 0;
+  for (std::uint32_t v = 0; v < spline.size(); ++v)
+    spline[v] = pieces.find(v) == v ? next++ : spline[pieces.find(v)];
+  return next == splines ? spline : std::vector<std::uint32_t>();
+}
+
 TEST_F(SkeletonOf, PlantsOfKnownBranches) {
   for (const char* name : {"quaking_aspen_L3", "weeping_willow", "callistemon",
                            "callistemon_arm_anim", "small_maple_hex"}) {
@@ -582,13 +562,23 @@ TEST_F(SkeletonOf, PlantsOfKnownBranches) {
     const bool rigged = std::string(name) == "callistemon_arm_anim";
     const std::vector<Branch> truth = truthOf(rigged ? "callistemon" : name);
     const Plant plant = found(name);
-    const Agreement a =
-        agreement(truth, plant.branches, matchByAxes(truth, plant.branches));
-    print(name, a);
-    EXPECT_GE(a.parents, 0.95);
-    if (!rigged) {
-      EXPECT_GE(a.radii, 0.95);
+    std::map<std::pair<std::uint32_t, std::uint32_t>, double> shared;
+    for (const Mesh& mesh : plant.meshes) {
+      if (mesh.kind != PartKind::kWood) continue;
+      const auto spline = splineOfVertex(mesh, truth.size());
+      for (std::size_t v = 0; v < spline.size(); ++v)
+        shared[{spline[v], mesh.branch_of_vertex[v]}] += 1.0;
     }
+    if (shared.empty()) std::printf("%s: matched by axes\n", name);
+    const Agreement a =
+        agreement(truth, plant.branches,
+                  shared.empty() ? matchByAxes(truth, plant.branches)
+                                 : matchOf(truth.size(), plant.branches.size(), shared));
+    print(name, a);
+    // Maple twigs that go on from another's end, rim on rim, are one branch here and two there.
+    EXPECT_GE(a.parents, std::string(name) == "small_maple_hex" ? 0.92 : 0.95);
+    EXPECT_GE(a.radii, rigged ? 0.9 : 0.95);
+    EXPECT_LT(a.axes, 0.1);
   }
 }
 
@@ -600,7 +590,22 @@ TEST_F(SkeletonOf, OneContinuousBark) {
     const Plant plant = found(name);
     const Agreement a = agreement(truth, plant.branches, matchByAxes(truth, plant.branches));
     print(name, a);
-    EXPECT_GE(a.parents, 0.9);
+    EXPECT_GE(a.parents, 0.95);
+    // Blender's skin is thicker than the curves it is drawn on: radii are those of the bark itself,
+    // here of the trunk below the boughs.
+    const std::vector<BranchPoint>& trunk = plant.branches[0].points;
+    for (float y = 1.0f; y < 5.5f; y += 0.5f) {
+      std::vector<float> distances;
+      for (const Mesh& mesh : plant.meshes)
+        if (mesh.kind == PartKind::kWood)
+          for (const glm::vec3& p : mesh.positions)
+            if (std::abs(p.y - y) < 0.25f) distances.push_back(std::hypot(p.x, p.z));
+      if (distances.empty()) continue;
+      double mean = 0.0;
+      for (const float d : distances) mean += static_cast<double>(d);
+      mean /= static_cast<double>(distances.size());
+      EXPECT_NEAR(radiusOnAxis(trunk, y), mean, 0.1 * mean) << name << " " << y;
+    }
   }
 }
 

@@ -17,7 +17,7 @@ constexpr float kTouch = 0.5f;
 /// Costs of contacts that are possible but unlikely.
 constexpr float kAtItsRoot = 2.0f;  ///< where the other begins: siblings leave from one place
 constexpr float kRootShare = 0.15f;
-constexpr float kThinner = 1.0f;    ///< on what is thinner than this share of it
+constexpr float kThinner = 1.0f;  ///< on what is thinner than this share of it
 constexpr float kThinnerShare = 0.6f;
 
 struct Contact {
@@ -121,8 +121,8 @@ class Attacher {
         any_stands = true;
     }
     if (!any_stands && !floating.empty()) {  // a bough alone: its thickest piece is the trunk
-      const auto trunk = std::max_element(
-          floating.begin(), floating.end(), [&](std::uint32_t a, std::uint32_t b) {
+      const auto trunk =
+          std::max_element(floating.begin(), floating.end(), [&](std::uint32_t a, std::uint32_t b) {
             return branches_[root_[a]].points[0].radius < branches_[root_[b]].points[0].radius;
           });
       floating.erase(trunk);

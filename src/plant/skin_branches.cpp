@@ -97,11 +97,10 @@ class SkinReader {
     for (const Json& entry : *member(document_.list("skins")[skin], "joints")) {
       const auto node = entry.get<std::size_t>();
       if (!joint_of_node.emplace(node, static_cast<std::uint32_t>(joints_.size())).second)
-        document_.fail(fmt::format("{} names joint {} twice", who,
-                                   document_.label("nodes", "node", node)));
+        document_.fail(
+            fmt::format("{} names joint {} twice", who, document_.label("nodes", "node", node)));
       joints_.emplace_back().name = readString(document_.list("nodes")[node], "name");
-      joints_.back().head =
-          glm::vec3(glm::dvec3(scene_.world_from_node[node][3]) - plant_.origin);
+      joints_.back().head = glm::vec3(glm::dvec3(scene_.world_from_node[node][3]) - plant_.origin);
     }
     for (const auto& [node, j] : joint_of_node)
       for (std::size_t n = parent_of_[node]; n < parent_of_.size(); n = parent_of_[n])
@@ -151,8 +150,9 @@ class SkinReader {
     joint.radius = off[off.size() / 2];
   }
 
-  /// Where the last joint of a branch ends: the middle of the wood that is farthest along.
-  static glm::vec3 tailOf(const Joint& joint) {
+  /// Where the last joint of a branch ends: the middle of the wood that is farthest along, or the
+  /// head of a joint beyond that.
+  glm::vec3 tailOf(const Joint& joint) const {
     glm::vec3 sum(0.0f);
     float count = 0.0f;
     for (const glm::vec3& p : joint.wood)
@@ -160,7 +160,14 @@ class SkinReader {
         sum += p;
         ++count;
       }
-    return count > 0.0f ? sum / count : joint.head;
+    glm::vec3 tail = count > 0.0f ? sum / count : joint.head;
+    for (const std::uint32_t c : joint.children) {
+      const glm::vec3& head = joints_[c].head;
+      const float along = glm::dot(head - joint.head, joint.way);
+      const float off = glm::length(head - joint.head - along * joint.way);
+      if (along > glm::dot(tail - joint.head, joint.way) && off < 0.3f * along) tail = head;
+    }
+    return tail;
   }
 
   /// Whether names say that b follows on a: "bough.002" on "bough.001".
@@ -264,9 +271,9 @@ SkinBranches branchesOfSkins(const Plant& plant) {
   for (std::size_t m = 0; m < plant.meshes.size(); ++m) {
     const MeshSource& from = plant.source->meshes[m];
     const std::string who = document.label("meshes", "mesh", from.mesh);
-    const auto skin =
-        readIndex(document, document.list("nodes")[from.node], "skin", "skins", who);
-    const Json& primitive = (*member(document.list("meshes")[from.mesh], "primitives"))[from.primitive];
+    const auto skin = readIndex(document, document.list("nodes")[from.node], "skin", "skins", who);
+    const Json& primitive =
+        (*member(document.list("meshes")[from.mesh], "primitives"))[from.primitive];
     const Json& attributes = *member(primitive, "attributes");
     if (!skin || member(attributes, "JOINTS_0") == nullptr ||
         plant.meshes[m].positions.size() != from.vertices_per_instance)

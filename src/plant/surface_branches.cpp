@@ -224,8 +224,8 @@ class PatchSplitter {
                                   [](const Section& x, float level) { return x.level < level; });
         for (; s != sections.end() && s->level < high; ++s) {
           const glm::vec3 x = between(p[0], p[2], s->level);
-          const glm::vec3 y = s->level < middle ? between(p[0], p[1], s->level)
-                                                : between(p[1], p[2], s->level);
+          const glm::vec3 y =
+              s->level < middle ? between(p[0], p[1], s->level) : between(p[1], p[2], s->level);
           const float length = glm::length(y - x);
           s->perimeter += length;
           s->centroid += 0.5f * length * (x + y);
@@ -244,8 +244,8 @@ class PatchSplitter {
   const Section* sectionAt(const Arc& arc, float beyond) const {
     const Section* best = nullptr;
     for (const Section& s : arc.sections)
-      if (best == nullptr || std::abs(s.level - arc.low - beyond) <
-                                 std::abs(best->level - arc.low - beyond))
+      if (best == nullptr ||
+          std::abs(s.level - arc.low - beyond) < std::abs(best->level - arc.low - beyond))
         best = &s;
     return best;
   }
@@ -264,8 +264,8 @@ class PatchSplitter {
       if (!(glm::length(way) > 0.1f * near->radius())) way = near->centroid - here;
       const float lengths = glm::length(way) * glm::length(run);
       const float straight = lengths > 0.0f ? glm::dot(way, run) / lengths : 1.0f;
-      const float score = near->radius() * (0.4f + std::max(straight, 0.0f)) *
-                          std::sqrt(std::sqrt(child.carried));
+      const float score =
+          near->radius() * (0.4f + std::max(straight, 0.0f)) * std::sqrt(std::sqrt(child.carried));
       if (score > most) {
         most = score;
         best = c;
@@ -319,12 +319,12 @@ class PatchSplitter {
       result_.branch_of_point[p] = branch_of_arc[arc_of_[p]];
       points[result_.branch_of_point[p]].push_back(p);
     }
-    for (std::uint32_t b = 0; b < result_.branches.size(); ++b)
-      layAxis(b, chains[b], points[b]);
+    for (std::uint32_t b = 0; b < result_.branches.size(); ++b) layAxis(b, chains[b], points[b]);
   }
 
-  /// Where a branch ends: the middle of an open rim; the point beyond the last ring, or that ring if
-  /// a flat cap closes it; else the foot of the last point on the axis. `chain`: from that end on.
+  /// Where a branch ends: the middle of an open rim; the point beyond the last ring, or that ring
+  /// if a flat cap closes it; else the foot of the last point on the axis. `chain`: from that end
+  /// on.
   glm::vec3 endOf(std::span<const std::uint32_t> end, std::span<const Section> chain) const {
     glm::vec3 middle(0.0f);
     for (const std::uint32_t p : end) middle += patch_.points[p];
@@ -416,7 +416,8 @@ class PatchSplitter {
   static glm::vec3 rootOn(const std::vector<BranchPoint>& parent,
                           const std::vector<glm::vec3>& line, const glm::vec3& tip) {
     const glm::vec3 first = line.empty() ? tip : line[0];
-    const glm::vec3 second = line.size() > 1 ? line[std::min<std::size_t>(2, line.size() - 1)] : tip;
+    const glm::vec3 second =
+        line.size() > 1 ? line[std::min<std::size_t>(2, line.size() - 1)] : tip;
     glm::vec3 foot = pointOnAxis(parent, placeOnAxis(parent, first).first);
     const glm::vec3 way = second - first;
     if (!(glm::length(way) > 0.0f)) return foot;

@@ -104,8 +104,8 @@ std::vector<float> surfaceDistance(const WoodPatch& patch, const PatchGraph& gra
       std::uint32_t a = corners[(at + 1) % 3], c = corners[(at + 2) % 3];
       if (done[c]) std::swap(a, c);
       if (!done[a] || done[c]) continue;
-      const float reached = acrossTriangle(patch.points[a], patch.points[u], patch.points[c],
-                                           distance[a], value);
+      const float reached =
+          acrossTriangle(patch.points[a], patch.points[u], patch.points[c], distance[a], value);
       if (reached < kFar) offer(c, std::max(reached, value));
     }
   }

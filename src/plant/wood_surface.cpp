@@ -9,34 +9,41 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// An edge of a triangle: its points, the lower one first, and the triangle.
-using Edge = std::pair<std::uint64_t, std::uint32_t>;
-
-std::uint64_t pairKey(std::uint32_t a, std::uint32_t b) {
-  return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
-}
+/// An edge of a triangle from a point to a higher one.
+struct Edge {
+  std::uint32_t end = 0, triangle = 0;
+  auto operator<=>(const Edge&) const = default;
+};
 
 /// Joins triangles at their edges, where at most `most` proper ones meet. `number`: of the points.
 void joinByEdges(const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& number,
                  std::size_t most, DisjointSets& pieces) {
-  std::vector<Edge> edges;
-  edges.reserve(3 * triangles.size());
   std::vector<bool> proper(triangles.size());
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    const std::uint32_t corners[] = {number[triangles[t][0]], number[triangles[t][1]],
-                                     number[triangles[t][2]]};
-    proper[t] = corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0];
-    for (std::size_t c = 0; c < 3; ++c)
-      if (const std::uint32_t a = corners[c], b = corners[(c + 1) % 3]; a != b)
-        edges.emplace_back(pairKey(a, b), t);
-  }
-  std::sort(edges.begin(), edges.end());
-  for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
-    std::size_t meeting = 0;
-    for (; end < edges.size() && edges[end].first == edges[begin].first; ++end)
-      meeting += proper[edges[end].second] ? 1 : 0;
-    for (std::size_t i = begin + 1; i < end && meeting <= most; ++i)
-      pieces.join(edges[i].second, edges[i - 1].second);
+  const auto forEdges = [&](const auto& visit) {
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+      const std::uint32_t corners[] = {number[triangles[t][0]], number[triangles[t][1]],
+                                       number[triangles[t][2]]};
+      proper[t] = corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0];
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto [low, high] = std::minmax(corners[c], corners[(c + 1) % 3]);
+        if (low != high) visit(low, Edge{high, t});
+      }
+    }
+  };
+  std::vector<std::uint32_t> first(number.size() + 2, 0);
+  forEdges([&](std::uint32_t low, const Edge&) { ++first[low + 2]; });
+  for (std::size_t p = 2; p < first.size(); ++p) first[p] += first[p - 1];
+  std::vector<Edge> edges(first.back());
+  forEdges([&](std::uint32_t low, const Edge& edge) { edges[first[low + 1]++] = edge; });
+  for (std::size_t p = 0; p < number.size(); ++p) {
+    std::sort(edges.begin() + first[p], edges.begin() + first[p + 1]);
+    for (std::size_t begin = first[p], end = begin; begin < first[p + 1]; begin = end) {
+      std::size_t meeting = 0;
+      for (; end < first[p + 1] && edges[end].end == edges[begin].end; ++end)
+        meeting += proper[edges[end].triangle] ? 1 : 0;
+      for (std::size_t i = begin + 1; i < end && meeting <= most; ++i)
+        pieces.join(edges[i].triangle, edges[i - 1].triangle);
+    }
   }
 }
 

@@ -209,6 +209,44 @@ TEST_F(CommandLine, SurfaceFromAFile) {
   }
 }
 
+TEST_F(CommandLine, InspectFindsAndDrawsBranches) {
+  const std::string tree = smallTree();
+  const Json json =
+      Json::parse(runWell({"inspect", tree, "--json", "--skeleton", path("tree.obj")}));
+  std::size_t branches = 0, lines = 0, objects = 0;
+  for (const Json& level : json["branches_by_level"]) {
+    branches += level["branches"].get<std::size_t>();
+    EXPECT_GT(level["length_m"], 0.0);
+  }
+  EXPECT_GT(branches, 1u);
+  EXPECT_EQ(json["branches"], branches);
+  EXPECT_EQ(json["levels"], json["branches_by_level"].size());
+  std::istringstream obj(textOf(path("tree.obj")));
+  std::size_t vertices = 0, used = 0;
+  for (std::string line; std::getline(obj, line);) {
+    std::istringstream words(line);
+    std::string kind;
+    words >> kind;
+    vertices += kind == "v" ? 1 : 0;
+    objects += kind == "o" ? 1 : 0;
+    lines += kind == "l" ? 1 : 0;
+    if (kind != "l") continue;
+    for (std::size_t v = 0; words >> v; ++used) EXPECT_EQ(v, used + 1);
+  }
+  EXPECT_EQ(lines, branches);
+  EXPECT_EQ(used, vertices);
+  EXPECT_EQ(objects, json["branches_by_level"].size());
+  EXPECT_NE(runWell({"inspect", tree, "--skeleton", path("tree.png")}).find("levels, found"),
+            std::string::npos);
+  const Image drawing = readImage(path("tree.png"));
+  std::size_t drawn = 0;
+  for (std::size_t i = 0; i < drawing.rgba.size(); i += 4)
+    drawn += drawing.rgba[i + 2] < 60 ? 1 : 0;
+  EXPECT_GT(drawn, 1000u);
+  expectRefused({"inspect", tree, "--skeleton", path("tree.svg")}, {"tree.svg", ".obj or .png"});
+  EXPECT_FALSE(fs::exists(path("tree.svg")));
+}
+
 TEST_F(CommandLine, RefusesFilesThatAreNoPlants) {
   const auto good = readFile(smallTree());
   const std::string bad = path("bad.glb"), out = path("out.glb");

@@ -121,7 +121,7 @@ struct BoxMesh {
   std::vector<glm::vec2> uvs;
   std::vector<std::uint32_t> indices;
 
-  explicit BoxMesh(const glm::vec3& half = glm::vec3(1.0f)) {
+  explicit BoxMesh(const glm::vec3& reach = glm::vec3(1.0f)) {
     for (int axis = 0; axis < 3; ++axis)
       for (const float side : {-1.0f, 1.0f}) {
         glm::vec3 n(0.0f), u(0.0f);
@@ -131,7 +131,7 @@ struct BoxMesh {
         const auto base = static_cast<std::uint32_t>(positions.size());
         for (const glm::vec2 c :
              {glm::vec2(-1, -1), glm::vec2(1, -1), glm::vec2(1, 1), glm::vec2(-1, 1)}) {
-          positions.push_back((n + c.x * u + c.y * v) * half);
+          positions.push_back((n + c.x * u + c.y * v) * reach);
           normals.push_back(n);
           uvs.push_back(0.5f * c + 0.5f);
         }

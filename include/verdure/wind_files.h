@@ -19,10 +19,6 @@ struct WindTarget {
 /// All that exportWind() can write for.
 const std::vector<WindTarget>& windTargets();
 
-/// A plant whose branches are not known, on a single one: it sways as a whole. Returns false, and
-/// changes nothing, where there are branches.
-bool standOnOneTrunk(Plant& plant);
-
 struct WindFiles {
   std::vector<std::pair<std::filesystem::path, std::size_t>> files;  ///< and their bytes
   std::size_t branches = 0, leaves = 0;

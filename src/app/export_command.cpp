@@ -86,10 +86,8 @@ void runExport(const ExportCommand& command) {
   if (command.list) return listTargets(command.json);
   checkOptions(command);
   Plant plant = loadPlant(command.input, command.load);
+  if (plant.branches.empty()) findBranches(plant);
   std::vector<std::string> notes = plant.notes;
-  const bool whole = standOnOneTrunk(plant);
-  if (whole)
-    notes.push_back("the file holds no branches: the plant sways as a whole, on one trunk");
   MotionOptions options;
   options.seed = command.seed;
   const PlantMotion motion = plantMotion(plant, options);

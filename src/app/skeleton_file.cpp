@@ -56,7 +56,7 @@ class View {
   glm::vec2 pixel(const glm::vec3& p) const {
     const glm::vec3 off = p - foot_;
     return {left_ + sign_ * off[axis_] * scale_,
-            static_cast<float>(kHeight - kMargin) - off.y * scale_};
+            static_cast<float>(image_.height - kMargin) - off.y * scale_};
   }
 
   /// A line with round ends whose half width goes from r to s metres, at least one pixel wide.
@@ -76,9 +76,10 @@ class View {
   }
 
   void dot(const glm::vec3& p, const glm::vec3& color, float cover) {
-    const glm::ivec2 at(glm::floor(pixel(p)));
-    if (at.x >= 0 && at.y >= 0 && at.x < image_.width && at.y < image_.height)
-      blend(at.x, at.y, color, cover);
+    const glm::ivec2 at(glm::floor(pixel(p) - 0.5f));
+    for (int y = std::max(at.y, 0); y < std::min(at.y + 2, image_.height); ++y)
+      for (int x = std::max(at.x, 0); x < std::min(at.x + 2, image_.width); ++x)
+        blend(x, y, color, cover);
   }
 
  private:
@@ -103,7 +104,8 @@ Image drawingOf(const Plant& plant) {
   const float scale = std::min(static_cast<float>(kHeight - 2 * kMargin) / size.y,
                                static_cast<float>(kMostWidth - 3 * kMargin) / wide);
   const auto width = static_cast<int>(wide * scale) + 3 * kMargin;
-  Image image(std::max(width, kLeastWidth), kHeight);
+  const auto height = static_cast<int>(size.y * scale) + 2 * kMargin;
+  Image image(std::max(width, kLeastWidth), height);
   std::fill(image.rgba.begin(), image.rgba.end(), std::uint8_t{255});
   const auto margin = static_cast<float>(kMargin);
   const glm::vec3 foot(box.center().x, box.min.y, box.center().z);

@@ -15,12 +15,12 @@ struct ClipJoint {
 
 struct ClipJoints {
   std::vector<ClipJoint> joints;
-  std::vector<std::uint32_t> first_of;  ///< by branch: its first joint, kNone: it has none
+  std::vector<std::uint32_t> first_of;     ///< by branch: its first joint, kNone: it has none
+  std::vector<std::uint32_t> segments_of;  ///< by branch: one less than its joints
   std::size_t bent_branches = 0;
 };
 
-/// At most `most` joints, to the branches that move the most vertices the farthest: trunks 6,
-/// boughs 4, others 3.
+/// At most `most` joints, one by one where they take most off the squares of what vertices are off.
 ClipJoints chooseJoints(const Plant& plant, const PlantMotion& motion, std::size_t most);
 
 /// Between which joints a vertex is, and its share of the second.

@@ -100,7 +100,7 @@ void addPivotPainter(const Plant& plant, const PlantMotion& motion, int uv_set,
     report.notes.push_back(
         "pivots beyond 655 m do not fit a half: put the plant at the origin before");
   else if (farthest > 10.24)
-    report.notes.push_back(fmt::format("halves place pivots {:.0f} m away to {} cm", farthest,
+    report.notes.push_back(fmt::format("halves place pivots {:.0f} m away within {} cm", farthest,
                                        std::exp2(std::floor(std::log2(100.0 * farthest)) - 11.0)));
   if (long_ones > 0)
     report.notes.push_back(

@@ -1,5 +1,8 @@
 #include "interchange/wind_records.h"
 
+#include <fmt/format.h>
+
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "plant/gltf_document.h"
@@ -7,8 +10,13 @@
 namespace verdure {
 namespace {
 
+/// The digits that a float has.
+double digits(float v) {
+  return std::strtod(fmt::format("{:.8g}", v).c_str(), nullptr);
+}
+
 Json numbers(const glm::vec3& v) {
-  return {v.x, v.y, v.z};
+  return {digits(v.x), digits(v.y), digits(v.z)};
 }
 
 }  // namespace
@@ -46,10 +54,11 @@ std::string windRecords(const Plant& plant, const PlantMotion& motion,
          "computed: root mean square of the tip's swinging, along each direction across, likewise"},
         {"phase", "chosen: a hash; as _LEAF_PHASE and vertex colours have it for wood"}}},
       {"largest_deflection_m_at_1_m_s",
-       {{"trunk", quantities.largest().tree},
-        {"branches", quantities.largest().branch},
-        {"all", quantities.largest().sway}}},
-      {"leaves", motion.leaves.size()}};
+       {{"trunk", digits(quantities.largest().tree)},
+        {"branches", digits(quantities.largest().branch)},
+        {"all", digits(quantities.largest().sway)}}},
+      {"leaves", motion.leaves.size()},
+      {"notes", plant.notes}};
   std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
   text.resize(text.rfind('}') - 1);
   text += ",\n  \"branches\": [";
@@ -60,20 +69,20 @@ std::string windRecords(const Plant& plant, const PlantMotion& motion,
     const Json record = {{"branch", b},
                          {"parent", parent},
                          {"level", branch.level},
-                         {"place", branch.place},
+                         {"place", digits(branch.place)},
                          {"root_m", numbers(branch.root)},
                          {"axis", numbers(branch.t)},
                          {"across", numbers(branch.r)},
-                         {"length_m", branch.length},
-                         {"root_radius_m", branch.root_radius},
-                         {"tip_radius_m", branch.tip_radius},
-                         {"bend_c2", branch.fit.x},
-                         {"bend_c4", branch.fit.y},
-                         {"mass_kg", swing.mass_kg},
-                         {"frequency_hz", swing.frequency_hz},
-                         {"damping_ratio", swing.damping_ratio},
-                         {"gain_mean_per_m2s2", swing.mean},
-                         {"gain_swing_per_m2s2", swing.swing},
+                         {"length_m", digits(branch.length)},
+                         {"root_radius_m", digits(branch.root_radius)},
+                         {"tip_radius_m", digits(branch.tip_radius)},
+                         {"bend_c2", digits(branch.fit.x)},
+                         {"bend_c4", digits(branch.fit.y)},
+                         {"mass_kg", digits(swing.mass_kg)},
+                         {"frequency_hz", digits(swing.frequency_hz)},
+                         {"damping_ratio", digits(swing.damping_ratio)},
+                         {"gain_mean_per_m2s2", digits(swing.mean)},
+                         {"gain_swing_per_m2s2", digits(swing.swing)},
                          {"phase", quantities.phaseOf(static_cast<std::uint32_t>(b))}};
     text += (b == 0 ? "\n    " : ",\n    ") + record.dump();
   }

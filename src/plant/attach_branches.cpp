@@ -16,7 +16,8 @@ namespace {
 constexpr float kTouch = 0.5f;
 /// Costs of contacts that are possible but unlikely.
 constexpr float kAtItsRoot = 2.0f;  ///< where the other begins: siblings leave from one place
-constexpr float kThinner = 1.0f;    ///< on what is thinner than this share of it
+constexpr float kRootShare = 0.15f;
+constexpr float kThinner = 1.0f;  ///< on what is thinner than this share of it
 constexpr float kThinnerShare = 0.6f;
 
 struct Contact {
@@ -72,7 +73,7 @@ class Attacher {
                        ? hit.distance / radius
                        : 1.0f + (hit.distance - radius) / std::max(base.radius, 1e-12f);
       const Branch& other = branches_[hit.branch];
-      if (hit.along < 0.5f * other.points.front().radius) cost += kAtItsRoot;
+      if (hit.along < kRootShare * other.points.front().radius) cost += kAtItsRoot;
       if (hit.radius < kThinnerShare * base.radius) cost += kThinner;
       if (cost < kAtItsRoot) contacts.push_back({cost, piece, hit.branch});
     }
@@ -120,8 +121,8 @@ class Attacher {
         any_stands = true;
     }
     if (!any_stands && !floating.empty()) {  // a bough alone: its thickest piece is the trunk
-      const auto trunk = std::max_element(
-          floating.begin(), floating.end(), [&](std::uint32_t a, std::uint32_t b) {
+      const auto trunk =
+          std::max_element(floating.begin(), floating.end(), [&](std::uint32_t a, std::uint32_t b) {
             return branches_[root_[a]].points[0].radius < branches_[root_[b]].points[0].radius;
           });
       floating.erase(trunk);

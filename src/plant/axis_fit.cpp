@@ -114,8 +114,8 @@ void fitRadii(std::vector<std::pair<float, float>> samples, std::vector<BranchPo
       const Ring& a = rings[std::min(next, rings.size() - 1) - 1];
       const float gap = std::max(b.along - a.along, 1e-12f);
       const float t = std::min((along - a.along) / gap, 3.0f);
-      axis[i].radius = std::clamp(a.radius + t * (b.radius - a.radius), 0.0f,
-                                  std::max(a.radius, b.radius));
+      axis[i].radius =
+          std::clamp(a.radius + t * (b.radius - a.radius), 0.0f, std::max(a.radius, b.radius));
     }
   }
 }
@@ -133,11 +133,12 @@ void simplifyAxis(std::vector<BranchPoint>& axis) {
     float most = kSimplified;
     std::size_t farthest = first;
     for (std::size_t i = first + 1; i < last; ++i) {
-      const float t =
-          square > 0.0f ? glm::clamp(glm::dot(axis[i].position - a, ab) / square, 0.0f, 1.0f)
-                        : 0.0f;
-      const float off = glm::length(axis[i].position - a - t * ab) +
-                        std::abs(axis[i].radius - glm::mix(axis[first].radius, axis[last].radius, t));
+      const float t = square > 0.0f
+                          ? glm::clamp(glm::dot(axis[i].position - a, ab) / square, 0.0f, 1.0f)
+                          : 0.0f;
+      const float off =
+          glm::length(axis[i].position - a - t * ab) +
+          std::abs(axis[i].radius - glm::mix(axis[first].radius, axis[last].radius, t));
       const float share = off / std::max(axis[i].radius, 1e-12f);
       if (share > most) {
         most = share;

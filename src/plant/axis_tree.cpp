@@ -47,16 +47,14 @@ void AxisTree::build(std::uint32_t begin, std::uint32_t end) {
 }
 
 float AxisTree::bound(const Node& node, const glm::vec3& point) const {
-  const glm::vec3 off =
-      glm::max(glm::max(node.low - point, point - node.high), glm::vec3(0.0f));
+  const glm::vec3 off = glm::max(glm::max(node.low - point, point - node.high), glm::vec3(0.0f));
   return AxisHit{0, glm::length(off), node.radius, 0.0f}.gap();
 }
 
 AxisHit AxisTree::hit(const Segment& s, const glm::vec3& point) {
   const glm::vec3 ab = s.b - s.a;
   const float square = glm::dot(ab, ab);
-  const float t =
-      square > 0.0f ? glm::clamp(glm::dot(point - s.a, ab) / square, 0.0f, 1.0f) : 0.0f;
+  const float t = square > 0.0f ? glm::clamp(glm::dot(point - s.a, ab) / square, 0.0f, 1.0f) : 0.0f;
   return {s.branch, glm::length(point - s.a - t * ab), glm::mix(s.radius_a, s.radius_b, t),
           s.start + t * std::sqrt(square)};
 }

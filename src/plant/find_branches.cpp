@@ -45,8 +45,7 @@ struct Piece {
   bool isBurr() const {
     float thickest = 0.0f;
     for (const BranchPoint& p : found.branches[0].points) thickest = std::max(thickest, p.radius);
-    return found.branches.size() == 1 &&
-           axisLength(found.branches[0].points) <= kBurr * thickest;
+    return found.branches.size() == 1 && axisLength(found.branches[0].points) <= kBurr * thickest;
   }
 };
 
@@ -189,8 +188,7 @@ void findBranches(Plant& plant) {
 
   const SkinBranches skin = branchesOfSkins(plant);
   std::vector<bool> skinned(plant.meshes.size());
-  for (std::size_t m = 0; m < skinned.size(); ++m)
-    skinned[m] = !skin.branch_of_vertex[m].empty();
+  for (std::size_t m = 0; m < skinned.size(); ++m) skinned[m] = !skin.branch_of_vertex[m].empty();
 
   const WoodSurface wood = weldWood(plant, skinned);
   std::vector<Piece> pieces(wood.patches.size());
@@ -238,8 +236,7 @@ void findBranches(Plant& plant) {
                  at.patch != kNone && of_patch[at.patch] != nullptr) {
         branch = number[first_of_patch[at.patch] + of_patch[at.patch]->branch_of_point[at.point]];
       }
-      mesh.branch_of_vertex[v] =
-          branch != kNone ? branch : axes.nearest(mesh.positions[v]).branch;
+      mesh.branch_of_vertex[v] = branch != kNone ? branch : axes.nearest(mesh.positions[v]).branch;
     });
   }
   parallelFor(plant.leaves.size(), 256, [&](std::size_t l) {

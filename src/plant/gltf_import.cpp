@@ -90,7 +90,7 @@ class GltfImporter {
     if (default_material_ >= 0) plant().notes.push_back("parts without a material are white");
     decodeTextures();
     noteUnread();
-    readStems(document_, plant(), raw_.branch_origin);
+    raw_.stems = readStems(document_, plant().notes);
     plant().source = source_;
     return std::move(raw_);
   }
@@ -513,6 +513,7 @@ class GltfImporter {
   /// Stems by number, of leaves too: keepStems() sorts them out.
   void readStemIds(const Json& attributes, Mesh& mesh, const MeshSource& from, std::size_t count,
                    std::size_t instances, const std::string& who) {
+    if (!namesStems(document_)) return;
     const auto accessor = readIndex(document_, attributes, kStemId, "accessors", who);
     if (!accessor) return;
     const auto values = readFloats(document_, *accessor, 1, who);

@@ -12,15 +12,16 @@ namespace {
 constexpr const char* kStems = "the file's branches";
 
 /// Throws Error for anything that is not whole.
-std::vector<Branch> branchesOf(const GltfDocument& document, const Json& json, glm::dvec3& origin) {
+FileStems stemsIn(const GltfDocument& document, const Json& json) {
+  FileStems read;
+  std::vector<Branch>& branches = read.branches;
   const auto broken = [&](const char* what) -> Error { return {kStems, what}; };
-  readNumbers(document, json, "origin", {&origin[0], 3}, kStems);
+  readNumbers(document, json, "origin", {&read.origin[0], 3}, kStems);
   const auto points_at = readIndex(document, json, "points", "accessors", kStems);
   const auto stems_at = readIndex(document, json, "stems", "accessors", kStems);
   if (!points_at || !stems_at) throw broken("have no points");
   const auto points = readFloats(document, *points_at, 4, kStems);
   const auto stems = readFloats(document, *stems_at, 4, kStems);
-  std::vector<Branch> branches;
   for (const float value : points)
     if (!std::isfinite(value)) throw broken("have points that are not finite");
   for (std::size_t i = 0; i < stems.size(); i += 4) {
@@ -48,21 +49,53 @@ std::vector<Branch> branchesOf(const GltfDocument& document, const Json& json, g
       branch.points.push_back({{points[p], points[p + 1], points[p + 2]}, points[p + 3]});
     }
   }
-  return branches;
+  if (const auto stalks_at = readIndex(document, json, "stalks", "accessors", kStems)) {
+    const auto stalks = readFloats(document, *stalks_at, 3, kStems);
+    for (std::size_t i = 0; i < stalks.size(); i += 3)
+      read.stalks.emplace_back(stalks[i], stalks[i + 1], stalks[i + 2]);
+  }
+  return read;
+}
+
+/// Whether stalks are where leaves could have them: as far from their centres as corners are, or
+/// twice that.
+bool fitLeaves(const std::vector<glm::vec3>& stalks, const Plant& plant) {
+  if (stalks.size() != plant.leaves.size()) return false;
+  for (std::size_t l = 0; l < stalks.size(); ++l) {
+    const Leaf& leaf = plant.leaves[l];
+    const Mesh& mesh = plant.meshes[leaf.mesh];
+    float reach = 0.0f;
+    for (std::uint32_t k = 0; k < leaf.triangle_count; ++k)
+      for (std::size_t c = 0; c < 3; ++c)
+        reach = std::max(
+            reach,
+            glm::length(
+                mesh.positions
+                    [mesh.indices[3 * std::size_t{plant.leaf_triangles[leaf.first_triangle + k]} +
+                                  c]] -
+                leaf.centroid));
+    if (!(glm::length(stalks[l] - leaf.centroid) <= 2.0f * reach)) return false;
+  }
+  return true;
 }
 
 /// Within the meshes' bounds and a fifth around.
-bool liesAmongMeshes(const Plant& plant, const glm::dvec3& offset) {
+bool liesAmongMeshes(const Plant& plant, const std::vector<Branch>& branches) {
   const Bounds box = bounds(plant);
   const glm::vec3 margin(0.2f * glm::length(box.size()));
-  for (const Branch& branch : plant.branches)
-    for (const BranchPoint& point : branch.points) {
-      const glm::vec3 p(glm::dvec3(point.position) + offset);
-      if (glm::any(glm::lessThan(p, box.min - margin)) ||
-          glm::any(glm::greaterThan(p, box.max + margin)))
+  for (const Branch& branch : branches)
+    for (const BranchPoint& point : branch.points)
+      if (glm::any(glm::lessThan(point.position, box.min - margin)) ||
+          glm::any(glm::greaterThan(point.position, box.max + margin)))
         return false;
-    }
   return true;
+}
+
+const Json* stemsOf(const GltfDocument& document) {
+  const Json* json = member(document.json, "asset");
+  for (const char* key : {"extras", "verdure", "stems"})
+    if (json != nullptr) json = member(*json, key);
+  return json;
 }
 
 }  // namespace
@@ -91,6 +124,8 @@ std::vector<std::vector<float>> stemIds(const Plant& plant) {
 
 void writeStems(const Plant& plant, GltfDocument& document) {
   if (plant.branches.empty()) return;
+  std::vector<std::string> notes;
+  if (readStems(document, notes).branches.size() == plant.branches.size()) return;  // its own
   std::vector<glm::vec4> points, stems;
   for (const Branch& branch : plant.branches) {
     stems.emplace_back(branch.parent == kNone ? -1.0f : static_cast<float>(branch.parent),
@@ -101,39 +136,49 @@ void writeStems(const Plant& plant, GltfDocument& document) {
   Json& extras = document.json["asset"]["extras"];
   if (!extras.is_object() && !extras.is_null()) return;  // someone else's
   if (extras.contains("verdure") && !extras["verdure"].is_object()) return;
-  const auto add = [&](const std::vector<glm::vec4>& values) {
+  std::vector<glm::vec3> stalks;
+  for (const Leaf& leaf : plant.leaves) stalks.push_back(leaf.stalk);
+  const auto add = [&](const auto& values, const char* type) {
     document.json["accessors"].push_back(
         {{"bufferView", appendView(document, bytesOf(values), 0, 0)},
          {"componentType", kFloat},
          {"count", values.size()},
-         {"type", "VEC4"}});
+         {"type", type}});
     return document.json["accessors"].size() - 1;
   };
   extras["verdure"]["stems"] = {{"origin", {plant.origin.x, plant.origin.y, plant.origin.z}},
-                                {"points", add(points)},
-                                {"stems", add(stems)}};
+                                {"points", add(points, "VEC4")},
+                                {"stems", add(stems, "VEC4")}};
+  if (!stalks.empty()) extras["verdure"]["stems"]["stalks"] = add(stalks, "VEC3");
 }
 
-void readStems(const GltfDocument& document, Plant& plant, glm::dvec3& origin) {
-  const Json* json = member(document.json, "asset");
-  for (const char* key : {"extras", "verdure", "stems"})
-    if (json != nullptr) json = member(*json, key);
-  if (json == nullptr) return;
+bool namesStems(const GltfDocument& document) {
+  return stemsOf(document) != nullptr;
+}
+
+FileStems readStems(const GltfDocument& document, std::vector<std::string>& notes) {
+  const Json* const json = stemsOf(document);
+  if (json == nullptr) return {};
   try {
-    plant.branches = branchesOf(document, *json, origin);
+    return stemsIn(document, *json);
   } catch (const Error& e) {
-    plant.notes.push_back("branches left out: " + std::string(e.what()));
+    notes.push_back("branches left out: " + std::string(e.what()));
+    return {};
   }
 }
 
-void keepStems(Plant& plant, const glm::dvec3& offset) {
-  if (!plant.branches.empty() && !liesAmongMeshes(plant, offset)) {
-    plant.branches.clear();
+void keepStems(FileStems stems, Plant& plant) {
+  const glm::dvec3 offset = stems.origin - plant.origin;
+  const auto moved = [&](const glm::vec3& p) { return glm::vec3(glm::dvec3(p) + offset); };
+  for (Branch& branch : stems.branches)
+    for (BranchPoint& point : branch.points) point.position = moved(point.position);
+  for (glm::vec3& stalk : stems.stalks) stalk = moved(stalk);
+  if (liesAmongMeshes(plant, stems.branches))
+    plant.branches = std::move(stems.branches);
+  else
     plant.notes.push_back("branches left out: they lie elsewhere than the meshes");
-  }
-  for (Branch& branch : plant.branches)
-    for (BranchPoint& point : branch.points)
-      point.position = glm::vec3(glm::dvec3(point.position) + offset);
+  if (!plant.branches.empty() && fitLeaves(stems.stalks, plant))
+    for (std::size_t l = 0; l < plant.leaves.size(); ++l) plant.leaves[l].stalk = stems.stalks[l];
   const auto count = static_cast<std::uint32_t>(plant.branches.size());
   for (Mesh& mesh : plant.meshes)
     for (std::uint32_t& branch : mesh.branch_of_vertex)

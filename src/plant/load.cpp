@@ -8,7 +8,6 @@
 #include <new>
 
 #include "plant/gltf_document.h"
-#include "plant/gltf_stems.h"
 #include "plant/normals.h"
 
 namespace verdure {
@@ -76,7 +75,7 @@ Plant finish(RawPlant raw, const LoadOptions& options, const std::string& where)
   }
   classifyParts(plant, names, options, where);
   findLeaves(plant);
-  keepStems(plant, raw.branch_origin - plant.origin);
+  keepStems(std::move(raw.stems), plant);
   return plant;
 }
 

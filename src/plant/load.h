@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "plant/classify.h"
+#include "plant/gltf_stems.h"
 
 namespace verdure {
 
@@ -17,8 +18,8 @@ struct RawPart {
 
 /// A plant whose positions are still in world coordinates.
 struct RawPlant {
-  Plant plant;  ///< all but its meshes; branches relative to branch_origin
-  glm::dvec3 branch_origin{0.0};
+  Plant plant;      ///< all but its meshes and branches
+  FileStems stems;  ///< those
   std::vector<RawPart> parts;
 };
 

@@ -18,6 +18,7 @@ namespace {
 constexpr float kLeastThickness = 0.45f, kLeastCosine = 0.34f, kLeastReach = 0.7f;
 
 struct Joint {
+  std::string name;
   std::uint32_t parent = kNone;
   std::vector<std::uint32_t> children;
   glm::vec3 head{0.0f}, way{0.0f};  ///< way: unit, or 0 if unknown
@@ -96,10 +97,10 @@ class SkinReader {
     for (const Json& entry : *member(document_.list("skins")[skin], "joints")) {
       const auto node = entry.get<std::size_t>();
       if (!joint_of_node.emplace(node, static_cast<std::uint32_t>(joints_.size())).second)
-        document_.fail(fmt::format("{} names joint {} twice", who,
-                                   document_.label("nodes", "node", node)));
-      joints_.emplace_back().head =
-          glm::vec3(glm::dvec3(scene_.world_from_node[node][3]) - plant_.origin);
+        document_.fail(
+            fmt::format("{} names joint {} twice", who, document_.label("nodes", "node", node)));
+      joints_.emplace_back().name = readString(document_.list("nodes")[node], "name");
+      joints_.back().head = glm::vec3(glm::dvec3(scene_.world_from_node[node][3]) - plant_.origin);
     }
     for (const auto& [node, j] : joint_of_node)
       for (std::size_t n = parent_of_[node]; n < parent_of_.size(); n = parent_of_[n])
@@ -107,8 +108,13 @@ class SkinReader {
           joints_[j].parent = above->second;
           break;
         }
-    for (std::uint32_t j = 0; j < joints_.size(); ++j)
-      if (joints_[j].parent != kNone) joints_[joints_[j].parent].children.push_back(j);
+    named_ = false;
+    for (std::uint32_t j = 0; j < joints_.size(); ++j) {
+      const std::uint32_t parent = joints_[j].parent;
+      if (parent == kNone) continue;
+      joints_[parent].children.push_back(j);
+      named_ = named_ || followsByName(joints_[parent].name, joints_[j].name);
+    }
   }
 
   /// Parents before children; readScene has refused cycles.
@@ -144,8 +150,46 @@ class SkinReader {
     joint.radius = off[off.size() / 2];
   }
 
+  /// Where the last joint of a branch ends: the middle of the wood that is farthest along, or the
+  /// head of a joint beyond that.
+  glm::vec3 tailOf(const Joint& joint) const {
+    glm::vec3 sum(0.0f);
+    float count = 0.0f;
+    for (const glm::vec3& p : joint.wood)
+      if (glm::dot(p - joint.head, joint.way) >= 0.85f * joint.length) {
+        sum += p;
+        ++count;
+      }
+    glm::vec3 tail = count > 0.0f ? sum / count : joint.head;
+    for (const std::uint32_t c : joint.children) {
+      const glm::vec3& head = joints_[c].head;
+      const float along = glm::dot(head - joint.head, joint.way);
+      const float off = glm::length(head - joint.head - along * joint.way);
+      if (along > glm::dot(tail - joint.head, joint.way) && off < 0.3f * along) tail = head;
+    }
+    return tail;
+  }
+
+  /// Whether names say that b follows on a: "bough.002" on "bough.001".
+  static bool followsByName(const std::string& a, const std::string& b) {
+    const auto split = [](const std::string& name) {
+      const std::size_t stem = name.find_last_not_of("0123456789") + 1;
+      const std::string digits = name.substr(std::min(stem, name.size()));
+      const bool number = !digits.empty() && digits.size() < 9;
+      return std::pair(name.substr(0, stem), number ? std::stol(digits) : -2L);
+    };
+    const auto [stem_a, number_a] = split(a);
+    const auto [stem_b, number_b] = split(b);
+    return stem_a == stem_b && number_b == number_a + 1 && number_a >= 0;
+  }
+
   /// The joint with which a branch goes on, kNone if it ends.
   std::uint32_t nextOf(const Joint& joint) const {
+    if (named_) {
+      for (const std::uint32_t c : joint.children)
+        if (joints_[c].used && followsByName(joint.name, joints_[c].name)) return c;
+      return kNone;
+    }
     float reach = joint.length;
     if (joint.wood.empty())
       for (const std::uint32_t c : joint.children)
@@ -191,7 +235,7 @@ class SkinReader {
         wood.insert(wood.end(), joints_[j].wood.begin(), joints_[j].wood.end());
       }
       const Joint& end = joints_[last];
-      branch.points.push_back({end.head + end.length * end.way, 0.0f});
+      branch.points.push_back({tailOf(end), 0.0f});
       std::vector<std::pair<float, float>> samples;
       for (const glm::vec3& p : wood) samples.push_back(placeOnAxis(branch.points, p));
       fitRadii(std::move(samples), branch.points);
@@ -210,6 +254,7 @@ class SkinReader {
   const GltfScene& scene_;
   std::vector<std::size_t> parent_of_;  ///< of nodes; their number for none
   std::vector<Joint> joints_;
+  bool named_ = false;  ///< names say which joints are one branch
   std::vector<std::uint32_t> order_, branch_of_;
 };
 
@@ -226,9 +271,9 @@ SkinBranches branchesOfSkins(const Plant& plant) {
   for (std::size_t m = 0; m < plant.meshes.size(); ++m) {
     const MeshSource& from = plant.source->meshes[m];
     const std::string who = document.label("meshes", "mesh", from.mesh);
-    const auto skin =
-        readIndex(document, document.list("nodes")[from.node], "skin", "skins", who);
-    const Json& primitive = (*member(document.list("meshes")[from.mesh], "primitives"))[from.primitive];
+    const auto skin = readIndex(document, document.list("nodes")[from.node], "skin", "skins", who);
+    const Json& primitive =
+        (*member(document.list("meshes")[from.mesh], "primitives"))[from.primitive];
     const Json& attributes = *member(primitive, "attributes");
     if (!skin || member(attributes, "JOINTS_0") == nullptr ||
         plant.meshes[m].positions.size() != from.vertices_per_instance)

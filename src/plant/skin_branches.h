@@ -15,8 +15,9 @@ struct SkinBranches {
   std::vector<std::vector<std::uint32_t>> branch_of_vertex;
 };
 
-/// Chains of joints are branches: at a joint with several children the one that begins at its end
-/// and is thickest and straightest goes on. Joints on which nothing hangs are left out. Radii come
+/// Chains of joints are branches: a joint goes on with the child whose name follows on its own
+/// ("bough.002" on "bough.001"); where no names do, with the thickest and straightest that begins
+/// at its end. Joints on which nothing hangs are left out. Radii come
 /// from the wood that hangs on a joint. No branches where the document has no skin, or none that
 /// wood hangs on. Throws Error for a skin that names a joint twice.
 SkinBranches branchesOfSkins(const Plant& plant);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <limits>
 
 #include "plant/axis_fit.h"
 #include "plant/weld.h"
@@ -15,6 +16,7 @@ struct Section {
   float level = 0.0f;
   float perimeter = 0.0f;
   glm::vec3 centroid{0.0f};
+  bool ring = false;  ///< at a ring of points, all of which are as far
   float radius() const { return perimeter / glm::two_pi<float>(); }
 };
 
@@ -24,7 +26,9 @@ struct Arc {
   std::vector<std::uint32_t> children;
   std::uint32_t top = 0;  ///< its farthest point
   float low = 0.0f, high = 0.0f;
+  float even = std::numeric_limits<float>::max();  ///< from here on a fork bulges
   float area = 0.0f;
+  float carried = 0.0f;  ///< area of it and all beyond
   std::vector<Section> sections;
 
   float radius() const { return area / (glm::two_pi<float>() * std::max(high - low, 1e-12f)); }
@@ -137,6 +141,10 @@ class PatchSplitter {
     }
     for (std::uint32_t& arc : arc_of_)
       while (alias[arc] != arc) arc = alias[arc];
+    for (std::uint32_t a = 0; a < arcs_.size(); ++a) {  // children before parents
+      arcs_[a].carried += arcs_[a].area;
+      if (arcs_[a].parent != kNone) arcs_[arcs_[a].parent].carried += arcs_[a].carried;
+    }
   }
 
   // --- sections
@@ -144,10 +152,12 @@ class PatchSplitter {
   /// Levels in the arc's even part: below the merging loops of a fork, and where an open end still
   /// has all of its rim.
   void placeLevels() {
+    std::vector<std::vector<float>> points(arcs_.size());
+    for (std::uint32_t p = 0; p < arc_of_.size(); ++p) points[arc_of_[p]].push_back(distance_[p]);
     for (std::uint32_t a = 0; a < arcs_.size(); ++a) {
       Arc& arc = arcs_[a];
       const float length = arc.high - arc.low;
-      if (!(length > 0.0f)) continue;
+      if (!(length > 0.0f) || points[a].empty()) continue;  // empty: part of another arc
       float low = arc.low, high = arc.high;
       if (arc.children.empty()) {
         const auto rim = graph_.rimThrough(arc.top);
@@ -158,17 +168,41 @@ class PatchSplitter {
         float thickest = 0.0f;
         for (const std::uint32_t child : arc.children)
           if (child != arc.children[0]) thickest = std::max(thickest, arcs_[child].radius());
-        high = std::max(high - 3.0f * thickest, arc.low + 0.5f * length);
+        high = arc.even = std::max(high - 3.0f * thickest, arc.low + 0.5f * length);
       }
       if (arc.parent != kNone) low = std::min(low + arc.radius(), low + 0.25f * (high - low));
       if (!(high > low)) continue;
+      if (placeAtRings(arc, std::move(points[a]), low, high)) continue;
       const float wanted = std::ceil((high - low) / std::max(arc.radius(), 1e-12f));
-      const auto levels = static_cast<std::size_t>(std::clamp(wanted, 3.0f, 40.0f));
+      const auto levels = static_cast<std::size_t>(std::clamp(wanted, 3.0f, 64.0f));
       arc.sections.resize(levels);
       for (std::size_t k = 0; k < levels; ++k)
         arc.sections[k].level =
             low + (high - low) * (static_cast<float>(k) + 0.5f) / static_cast<float>(levels);
     }
+  }
+
+  /// Tubes of rings far apart are straight in between: levels at their rings miss no bend.
+  static bool placeAtRings(Arc& arc, std::vector<float> points, float low, float high) {
+    std::sort(points.begin(), points.end());
+    const float radius = arc.radius();
+    std::size_t rings = 0;
+    for (std::size_t begin = 0, end = 0; begin < points.size(); begin = end) {
+      double sum = 0.0;
+      for (; end < points.size() && (end == begin || points[end] - points[end - 1] < 0.4f * radius);
+           ++end)
+        sum += static_cast<double>(points[end]);
+      ++rings;
+      Section section;
+      section.level = static_cast<float>(sum / static_cast<double>(end - begin));
+      section.ring = end - begin > 2 && points[end - 1] - points[begin] < 0.4f * radius;
+      if (section.level > low && section.level < high) arc.sections.push_back(section);
+    }
+    if (static_cast<float>(rings) * 2.0f * radius < points.back() - points.front() &&
+        arc.sections.size() > 1)
+      return true;
+    arc.sections.clear();
+    return false;
   }
 
   void measureSections() {
@@ -185,12 +219,13 @@ class PatchSplitter {
       };
       for (std::uint32_t a = arc_of_[p[2]]; a != kNone; a = arcs_[a].parent) {
         std::vector<Section>& sections = arcs_[a].sections;
-        auto s = std::upper_bound(sections.begin(), sections.end(), low,
-                                  [](float level, const Section& x) { return level < x.level; });
+        // A point at the level itself is below it: so loops are whole also where rings lie in it.
+        auto s = std::lower_bound(sections.begin(), sections.end(), low,
+                                  [](const Section& x, float level) { return x.level < level; });
         for (; s != sections.end() && s->level < high; ++s) {
           const glm::vec3 x = between(p[0], p[2], s->level);
-          const glm::vec3 y = s->level < middle ? between(p[0], p[1], s->level)
-                                                : between(p[1], p[2], s->level);
+          const glm::vec3 y =
+              s->level < middle ? between(p[0], p[1], s->level) : between(p[1], p[2], s->level);
           const float length = glm::length(y - x);
           s->perimeter += length;
           s->centroid += 0.5f * length * (x + y);
@@ -209,8 +244,8 @@ class PatchSplitter {
   const Section* sectionAt(const Arc& arc, float beyond) const {
     const Section* best = nullptr;
     for (const Section& s : arc.sections)
-      if (best == nullptr || std::abs(s.level - arc.low - beyond) <
-                                 std::abs(best->level - arc.low - beyond))
+      if (best == nullptr ||
+          std::abs(s.level - arc.low - beyond) < std::abs(best->level - arc.low - beyond))
         best = &s;
     return best;
   }
@@ -229,7 +264,8 @@ class PatchSplitter {
       if (!(glm::length(way) > 0.1f * near->radius())) way = near->centroid - here;
       const float lengths = glm::length(way) * glm::length(run);
       const float straight = lengths > 0.0f ? glm::dot(way, run) / lengths : 1.0f;
-      const float score = near->radius() * (0.4f + std::max(straight, 0.0f));
+      const float score =
+          near->radius() * (0.4f + std::max(straight, 0.0f)) * std::sqrt(std::sqrt(child.carried));
       if (score > most) {
         most = score;
         best = c;
@@ -283,22 +319,53 @@ class PatchSplitter {
       result_.branch_of_point[p] = branch_of_arc[arc_of_[p]];
       points[result_.branch_of_point[p]].push_back(p);
     }
-    for (std::uint32_t b = 0; b < result_.branches.size(); ++b)
-      layAxis(b, chains[b], points[b]);
+    for (std::uint32_t b = 0; b < result_.branches.size(); ++b) layAxis(b, chains[b], points[b]);
   }
 
-  /// Where a branch ends: the middle of an open rim; else the foot on its axis of the last point.
-  glm::vec3 endOf(std::span<const std::uint32_t> end, const glm::vec3* last,
-                  const glm::vec3* inner) const {
+  /// Where a branch ends: the middle of an open rim; the point beyond the last ring, or that ring
+  /// if a flat cap closes it; else the foot of the last point on the axis. `chain`: from that end
+  /// on.
+  glm::vec3 endOf(std::span<const std::uint32_t> end, std::span<const Section> chain) const {
     glm::vec3 middle(0.0f);
     for (const std::uint32_t p : end) middle += patch_.points[p];
     middle /= static_cast<float>(end.size());
-    if (end.size() > 2 || last == nullptr || inner == nullptr) return middle;
-    const glm::vec3 way = *last - *inner;
+    if (end.size() > 2 || chain.size() < 2) return middle;
+    const Section& last = chain.front();
+    if (last.ring) {
+      const bool on_cap = glm::length(middle - last.centroid) > 0.6f * last.radius() &&
+                          glm::length(middle - last.centroid) < 1.2f * last.radius() &&
+                          std::abs(distance_[end[0]] - last.level) < 0.5f * last.radius();
+      return on_cap ? last.centroid : middle;
+    }
+    // The direction is that of some radii.
+    std::size_t inner = 1;
+    while (inner + 1 < chain.size() &&
+           std::abs(chain[inner].level - last.level) < 3.0f * chain[inner].radius())
+      ++inner;
+    const glm::vec3 way = last.centroid - chain[inner].centroid;
     if (!(glm::length(way) > 0.0f)) return middle;
     const glm::vec3 t = glm::normalize(way);
-    const float ahead = glm::dot(middle - *last, t);
-    return ahead > 0.0f ? *last + ahead * t : middle;
+    const float ahead = glm::dot(middle - last.centroid, t);
+    // Far ahead, it is the point of a cone.
+    return ahead > 0.0f && ahead < 4.0f * last.radius() ? last.centroid + ahead * t : middle;
+  }
+
+  /// What welding has left of a thin branch may have points but no surface.
+  std::vector<Section> meansOf(std::vector<std::uint32_t> points) const {
+    std::sort(points.begin(), points.end(), [this](std::uint32_t p, std::uint32_t q) {
+      return distance_[p] != distance_[q] ? distance_[p] < distance_[q] : p < q;
+    });
+    std::vector<Section> means;
+    const std::size_t groups = std::min<std::size_t>(points.size() / 2, 16);
+    for (std::size_t g = 0; g < groups; ++g) {
+      Section& mean = means.emplace_back();
+      const std::size_t begin = g * points.size() / groups, end = (g + 1) * points.size() / groups;
+      for (std::size_t i = begin; i < end; ++i) {
+        mean.centroid += patch_.points[points[i]] / static_cast<float>(end - begin);
+        mean.level += distance_[points[i]] / static_cast<float>(end - begin);
+      }
+    }
+    return means;
   }
 
   void layAxis(std::uint32_t b, std::vector<Section> chain,
@@ -308,26 +375,25 @@ class PatchSplitter {
     const auto rim = graph_.rimThrough(top);
     // On a cap or a dome the level sets no longer go round the axis.
     const auto trim = [&chain](bool front, float end) {
-      while (chain.size() > 2) {
+      while (chain.size() > 3) {
         const Section& s = front ? chain.front() : chain.back();
         const Section& inner = front ? chain[std::min<std::size_t>(3, chain.size() - 1)]
                                      : chain[chain.size() - std::min<std::size_t>(4, chain.size())];
-        if (std::abs(s.level - end) > inner.radius()) break;
+        if (s.ring || std::abs(s.level - end) > 2.0f * inner.radius()) break;
         chain.erase(front ? chain.begin() : chain.end() - 1);
       }
     };
+    if (chain.empty()) chain = meansOf(points);
     if (rim.size() < 3) trim(false, distance_[top]);
     if (branch.parent == kNone && sources_.size() < 3) trim(true, 0.0f);
     std::vector<glm::vec3> line;
     for (const Section& s : chain) line.push_back(s.centroid);
-    const std::size_t n = line.size();
     const std::uint32_t tip_alone[] = {top};
     const std::span<const std::uint32_t> end =
         rim.size() > 2 ? std::span<const std::uint32_t>(rim) : tip_alone;
-    const glm::vec3 tip = endOf(end, n > 1 ? &line[n - 1] : nullptr, n > 1 ? &line[n - 2] : nullptr);
+    const glm::vec3 tip = endOf(end, std::vector<Section>(chain.rbegin(), chain.rend()));
     if (branch.parent == kNone)
-      line.insert(line.begin(),
-                  endOf(sources_, n > 1 ? &line[0] : nullptr, n > 1 ? &line[1] : nullptr));
+      line.insert(line.begin(), endOf(sources_, chain));
     else
       line.insert(line.begin(), rootOn(result_.branches[branch.parent].points, line, tip));
     line.push_back(tip);
@@ -337,7 +403,11 @@ class PatchSplitter {
     if (branch.points.size() < 2) branch.points.push_back(branch.points.back());
     std::vector<std::pair<float, float>> samples;
     for (const std::uint32_t p : points)
-      samples.push_back(placeOnAxis(branch.points, patch_.points[p]));
+      if (distance_[p] <= arcs_[arc_of_[p]].even)
+        samples.push_back(placeOnAxis(branch.points, patch_.points[p]));
+    if (samples.empty())
+      for (const std::uint32_t p : points)
+        samples.push_back(placeOnAxis(branch.points, patch_.points[p]));
     fitRadii(std::move(samples), branch.points);
     simplifyAxis(branch.points);
   }
@@ -346,7 +416,8 @@ class PatchSplitter {
   static glm::vec3 rootOn(const std::vector<BranchPoint>& parent,
                           const std::vector<glm::vec3>& line, const glm::vec3& tip) {
     const glm::vec3 first = line.empty() ? tip : line[0];
-    const glm::vec3 second = line.size() > 1 ? line[std::min<std::size_t>(2, line.size() - 1)] : tip;
+    const glm::vec3 second =
+        line.size() > 1 ? line[std::min<std::size_t>(2, line.size() - 1)] : tip;
     glm::vec3 foot = pointOnAxis(parent, placeOnAxis(parent, first).first);
     const glm::vec3 way = second - first;
     if (!(glm::length(way) > 0.0f)) return foot;

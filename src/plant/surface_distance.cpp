@@ -31,29 +31,40 @@ float acrossTriangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c,
 
 PatchGraph::PatchGraph(const WoodPatch& patch) {
   const std::size_t points = patch.points.size();
-  std::vector<std::uint64_t> edges;
-  edges.reserve(6 * patch.triangles.size());
   first_triangle_.assign(points + 1, 0);
+  // Both ways of each triangle's edges, by their first point; then each point's by themselves.
+  std::vector<std::uint32_t> first(points + 2, 0);
   const auto proper = [](const auto& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; };
   for (const auto& t : patch.triangles) {
     for (std::size_t c = 0; c < 3; ++c) {
-      const std::uint64_t a = t[c], b = t[(c + 1) % 3];
+      const std::uint32_t a = t[c], b = t[(c + 1) % 3];
       if (a == b) continue;
-      edges.push_back(a << 32 | b);
-      edges.push_back(b << 32 | a);
+      ++first[a + 2];
+      ++first[b + 2];
     }
     if (proper(t))
       for (const std::uint32_t p : t) ++first_triangle_[p + 1];
   }
-  std::sort(edges.begin(), edges.end());
+  for (std::size_t p = 2; p < first.size(); ++p) first[p] += first[p - 1];
+  std::vector<std::uint32_t> ends(first.back());
+  for (const auto& t : patch.triangles)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t a = t[c], b = t[(c + 1) % 3];
+      if (a == b) continue;
+      ends[first[a + 1]++] = b;
+      ends[first[b + 1]++] = a;
+    }
   first_neighbour_.assign(points + 1, 0);
-  for (std::size_t i = 0; i < edges.size();) {
-    std::size_t end = i + 1;
-    while (end < edges.size() && edges[end] == edges[i]) ++end;
-    neighbours_.push_back(static_cast<std::uint32_t>(edges[i]));
-    rim_.push_back(end - i == 1);
-    ++first_neighbour_[(edges[i] >> 32) + 1];
-    i = end;
+  for (std::size_t p = 0; p < points; ++p) {
+    const auto begin = ends.begin() + first[p], last = ends.begin() + first[p + 1];
+    std::sort(begin, last);
+    for (auto i = begin; i != last;) {
+      const auto next = std::find_if(i, last, [i](std::uint32_t e) { return e != *i; });
+      neighbours_.push_back(*i);
+      rim_.push_back(next - i == 1);
+      ++first_neighbour_[p + 1];
+      i = next;
+    }
   }
   for (std::size_t p = 0; p < points; ++p) {
     first_neighbour_[p + 1] += first_neighbour_[p];
@@ -104,8 +115,8 @@ std::vector<float> surfaceDistance(const WoodPatch& patch, const PatchGraph& gra
       std::uint32_t a = corners[(at + 1) % 3], c = corners[(at + 2) % 3];
       if (done[c]) std::swap(a, c);
       if (!done[a] || done[c]) continue;
-      const float reached = acrossTriangle(patch.points[a], patch.points[u], patch.points[c],
-                                           distance[a], value);
+      const float reached =
+          acrossTriangle(patch.points[a], patch.points[u], patch.points[c], distance[a], value);
       if (reached < kFar) offer(c, std::max(reached, value));
     }
   }

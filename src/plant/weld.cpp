@@ -19,9 +19,9 @@ struct Cell {
 
 }  // namespace
 
-// Cells have a diagonal of at most epsilon, so that the vertices of one cell are one without a test;
-// cells near each other are found by a sweep along an axis askew to the coordinate planes (flat and
-// gridded meshes would pile up on others).
+// Cells have a diagonal of at most epsilon, so that the vertices of one cell are one without a
+// test; cells near each other are found by a sweep along an axis askew to the coordinate planes
+// (flat and gridded meshes would pile up on others).
 void weld(const std::vector<glm::vec3>& positions, DisjointSets& sets) {
   if (positions.empty()) return;
   glm::dvec3 low(positions[0]), high(positions[0]);

@@ -9,34 +9,41 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// An edge of a triangle, by welded points.
+/// An edge of a triangle from a point to a higher one.
 struct Edge {
-  std::uint64_t key = 0;   ///< its welded points, the lower one first
-  std::uint64_t file = 0;  ///< its vertices in the file
-  std::uint32_t triangle = 0;
+  std::uint32_t end = 0, triangle = 0;
   auto operator<=>(const Edge&) const = default;
 };
 
-std::uint64_t pairKey(std::uint32_t a, std::uint32_t b) {
-  return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
-}
-
-void joinByEdges(const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& welded,
-                 DisjointSets& pieces) {
-  std::vector<Edge> edges;
-  edges.reserve(3 * triangles.size());
-  for (std::uint32_t t = 0; t < triangles.size(); ++t)
-    for (std::size_t c = 0; c < 3; ++c) {
-      const std::uint32_t a = triangles[t][c], b = triangles[t][(c + 1) % 3];
-      if (welded[a] != welded[b])
-        edges.push_back({pairKey(welded[a], welded[b]), pairKey(a, b), t});
+/// Joins triangles at their edges, where at most `most` proper ones meet. `number`: of the points.
+void joinByEdges(const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& number,
+                 std::size_t most, DisjointSets& pieces) {
+  std::vector<bool> proper(triangles.size());
+  const auto forEdges = [&](const auto& visit) {
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+      const std::uint32_t corners[] = {number[triangles[t][0]], number[triangles[t][1]],
+                                       number[triangles[t][2]]};
+      proper[t] = corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0];
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto [low, high] = std::minmax(corners[c], corners[(c + 1) % 3]);
+        if (low != high) visit(low, Edge{high, t});
+      }
     }
-  std::sort(edges.begin(), edges.end());
-  for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
-    while (end < edges.size() && edges[end].key == edges[begin].key) ++end;
-    for (std::size_t i = begin + 1; i < end; ++i)
-      if (end - begin <= 2 || edges[i].file == edges[i - 1].file)
+  };
+  std::vector<std::uint32_t> first(number.size() + 2, 0);
+  forEdges([&](std::uint32_t low, const Edge&) { ++first[low + 2]; });
+  for (std::size_t p = 2; p < first.size(); ++p) first[p] += first[p - 1];
+  std::vector<Edge> edges(first.back());
+  forEdges([&](std::uint32_t low, const Edge& edge) { edges[first[low + 1]++] = edge; });
+  for (std::size_t p = 0; p < number.size(); ++p) {
+    std::sort(edges.begin() + first[p], edges.begin() + first[p + 1]);
+    for (std::size_t begin = first[p], end = begin; begin < first[p + 1]; begin = end) {
+      std::size_t meeting = 0;
+      for (; end < first[p + 1] && edges[end].end == edges[begin].end; ++end)
+        meeting += proper[edges[end].triangle] ? 1 : 0;
+      for (std::size_t i = begin + 1; i < end && meeting <= most; ++i)
         pieces.join(edges[i].triangle, edges[i - 1].triangle);
+    }
   }
 }
 
@@ -62,11 +69,13 @@ WoodSurface weldWood(const Plant& plant, const std::vector<bool>& leave_out) {
   weld(positions, sets);
   std::vector<std::uint32_t> welded(positions.size());
   for (std::uint32_t i = 0; i < welded.size(); ++i) welded[i] = sets.find(i);
-  std::erase_if(triangles, [&](const Triangle& t) {
-    return welded[t[0]] == welded[t[1]] && welded[t[1]] == welded[t[2]];
-  });
   DisjointSets pieces(triangles.size());
-  joinByEdges(triangles, welded, pieces);
+  {
+    std::vector<std::uint32_t> own(positions.size());
+    std::iota(own.begin(), own.end(), 0u);
+    joinByEdges(triangles, own, triangles.size(), pieces);
+  }
+  joinByEdges(triangles, welded, 2, pieces);
 
   // Pieces by their first triangle; then their points, each piece its own.
   std::vector<std::uint32_t> piece_of(triangles.size());
@@ -96,9 +105,21 @@ WoodSurface weldWood(const Plant& plant, const std::vector<bool>& leave_out) {
         local[c] = known.point;
         if (of_vertex[vertex].patch == kNone) of_vertex[vertex] = known;
       }
-      patch.triangles.push_back(local);
+      if (local[0] != local[1] || local[1] != local[2]) patch.triangles.push_back(local);
     }
   }
+  // Pieces without an extent have no branch of their own.
+  std::vector<std::uint32_t> kept(surface.patches.size(), kNone);
+  std::uint32_t next = 0;
+  for (std::uint32_t p = 0; p < kept.size(); ++p) {
+    if (surface.patches[p].triangles.empty()) continue;
+    kept[p] = next;
+    if (next != p) surface.patches[next] = std::move(surface.patches[p]);
+    ++next;
+  }
+  surface.patches.resize(next);
+  for (WoodVertex& v : of_vertex)
+    if (v.patch != kNone) v.patch = kept[v.patch];
   for (std::size_t m = 0; m < plant.meshes.size(); ++m)
     std::copy_n(of_vertex.begin() + first[m], surface.vertices[m].size(),
                 surface.vertices[m].begin());

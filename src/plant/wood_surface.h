@@ -25,9 +25,9 @@ struct WoodSurface {
   std::vector<std::vector<WoodVertex>> vertices;  ///< of each mesh; empty where it was left out
 };
 
-/// The wood of all meshes together, without those for which `leave_out` is true. Where more than
-/// two triangles meet at an edge (a tube's open end welded onto another's ring), only those that
-/// share their vertices in the file are joined.
+/// The wood of all meshes together, without those for which `leave_out` is true. Triangles are
+/// joined at edges that they share in the file, and where at most two meet after welding: an open
+/// end on another tube's ring stays apart.
 WoodSurface weldWood(const Plant& plant, const std::vector<bool>& leave_out);
 
 }  // namespace verdure

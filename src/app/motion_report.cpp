@@ -307,7 +307,10 @@ void runMotionReport(const MotionReportCommand& command) {
   progress.show("growing");
   Plant plant;
   if (command.input.empty()) {
-    plant = grow({.species = "silver-birch", .seed = 3});
+    GrowOptions birch;
+    birch.species = "silver-birch";
+    birch.seed = 3;
+    plant = grow(birch);
   } else {
     plant = loadPlant(command.input, {});
   }

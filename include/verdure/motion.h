@@ -45,8 +45,8 @@ struct MotionTree {
 };
 
 /// The tree of beams of a plant whose branches are known (Plant::branches, branch_of_vertex and
-/// Leaf::branch: grown ones). Trunks that part near the foot (below 0.15 of the first) stand
-/// side by side; what would be deeper than kMotionLevels is part of the branch
+/// Leaf::branch: of grown plants, or by findBranches()). Trunks that part near the foot (below 0.15
+/// of the first) stand side by side; what would be deeper than kMotionLevels is part of the branch
 /// that carries it. Leaves hang on their stalk's place as a whole. Throws Error for a plant
 /// without branches.
 MotionTree motionTree(const Plant& plant);

@@ -94,7 +94,7 @@ void Plot::curve(const std::string& name, const std::vector<glm::dvec2>& points,
   key_ += fmt::format(
       "<path d='M{0} {1}h26' stroke='{2}' stroke-width='2'{3}/><text x='{4}' y='{5}' "
       "font-size='12'>{6}</text>",
-      width_ - kRight - 200, y - 4, color, dashes, width_ - kRight - 168, y, name);
+      kLeft + 12, y - 4, color, dashes, kLeft + 44, y, name);
 }
 
 std::string Plot::svg() const {

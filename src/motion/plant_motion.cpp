@@ -29,6 +29,8 @@ constexpr double kTurbulence = 0.3;  // root mean square of the wind by its mean
 // Leaves, for wind of 1 m/s: tangents of half the angles.
 constexpr float kLeafFlutter = 0.0040f, kLeafTwist = 0.0055f, kLeafLean = 0.0035f;
 constexpr float kLeafVariation = 0.4f;
+// Cards that are longer stand for twigs, whose leaves turn about stalks of their own.
+constexpr float kLongestLeaf = 0.15f;  // m
 // Twigs of a few centimetres would tremble faster than any film shows.
 constexpr double kMostFrequency = 15.0;  // Hz
 constexpr double kWavesPerLeaf = 4.0;    // the smallest eddy, in leaves
@@ -237,7 +239,8 @@ class TableBuilder {
       const LeafMotion& leaf = motion_.leaves[i];
       longest = std::max(longest, leaf.reach);
       Random random(hash(options_.seed + 2), i);
-      const float flexible = options_.flexibility * (1.0f + random.vary(kLeafVariation));
+      const float stiff = std::max(leaf.reach, kLongestLeaf) / kLongestLeaf;
+      const float flexible = options_.flexibility * (1.0f + random.vary(kLeafVariation)) / stiff;
       out_.leaves.push_back({leaf.stalk, leaf.place, leaf.axis, leaf.branch, leaf.normal,
                              flexible * kLeafFlutter, flexible * kLeafLean, flexible * kLeafTwist,
                              glm::uvec2(0)});

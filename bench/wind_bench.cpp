@@ -51,6 +51,7 @@ int run(int argc, char** argv) {
   options.species = "quaking-aspen";
   options.seed = 2;
   options.leaf_form = LeafForm::kCard;
+  options.set = {{"Leaves", "12"}};
   options.texture_size = 128;
   const Plant tree = grow(options);
   const PlantMotion motion = plantMotion(tree);

@@ -243,6 +243,14 @@ TEST_F(CommandLineRender, Refuses) {
   refused({"--sun", "10,-30"}, {"--sun: at an elevation of -30 degrees it is night"});
   refused({"--sun", "10,130"}, {"--sun: the elevation 130"});
   refused({"--turbidity", "50"}, {"turbidity"});
+  refused({"--wind", "500"}, {"--wind: 500 m/s", "choose 0 to 60"});
+  refused({"--wind", "nan"}, {"--wind: "});
+  refused({"--gusts", "2"}, {"--gusts: 2"});
+  refused({"--time", "inf"}, {"--time: "});
+  refused({"--frames", "20:10"}, {"--frames: 10 is before 20; write 10:20"});
+  refused({"--frames", "3"}, {"--frames: '3'", "FIRST:LAST"});
+  refused({"--frames", "0:3", "--fps", "0"}, {"--fps: 0"});
+  refused({"--frames", "0:3", "--motion-vectors", path("v.exr")}, {"--motion-vectors: "});
   refused({"--turbidity", "nan"}, {"turbidity"});
   refused({"--sky", "green"}, {"--sky: 'green' is unknown"});
   refused({"--bands", "9"}, {"--bands: 9 is out of range"});
@@ -282,6 +290,77 @@ TEST_F(CommandLineRender, Refuses) {
   expectRefused({"figures", "luft", "-o", tree}, {"the folder cannot be made", "-o"});
   expectRefused({"figures", "gumbau", "--size", "0x5", "-o", path("figures")}, {"--size"});
   expectRefused({"figures", "gumbau", "--species", "triffid", "-o", path("figures")}, {"triffid"});
+}
+
+TEST_F(CommandLineRender, MovesInWind) {
+  const std::string tree = smallTree("tree.glb", 3);
+  const Words plain = {"--light", "standard"};
+  const auto with = [&](const Words& more) {
+    Words all = plain;
+    all.insert(all.end(), more.begin(), more.end());
+    return picture(tree, all);
+  };
+  const Image rest = picture(tree, plain);
+  EXPECT_EQ(with({"--time", "3", "--wind", "0"}).rgba, rest.rgba);
+  const Image gale = with({"--time", "3", "--wind", "18"});
+  EXPECT_GT(difference(gale, rest), 0.3);
+  EXPECT_EQ(with({"--time", "3", "--wind", "18"}).rgba, gale.rgba);
+  // Numbered as the frames are, and exposed as the first: frame 12 of 4 a second is the picture at
+  // 3 s, as long as they share its exposure.
+  runWell({"render", tree, "-o", path("clip.png"), "--size", "96x72", "--shadow-map", "256",
+           "--light", "standard", "--frames", "12:13", "--fps", "4", "--wind", "18"});
+  EXPECT_EQ(readImage(path("clip-0012.png")).rgba, gale.rgba);
+  EXPECT_GT(difference(readImage(path("clip-0013.png")), gale), 0.1);
+  EXPECT_FALSE(std::filesystem::exists(path("clip.png")));
+  EXPECT_FALSE(std::filesystem::exists(path("clip-0014.png")));
+  runWell({"render", tree, "-o", path("one.png"), "--size", "96x72", "--light", "standard",
+           "--time", "3", "--wind", "18", "--motion-vectors", path("way.exr")});
+  const HdrImage way = readExrMap(path("way.exr"));
+  float farthest = 0.0f;
+  for (const glm::vec3& w : way.rgb) farthest = std::max(farthest, glm::length(w));
+  EXPECT_GT(farthest, 0.2f);
+  EXPECT_LT(farthest, 20.0f);
+}
+
+TEST_F(CommandLineRender, MakesFilms) {
+  if (std::system("command -v ffmpeg >/dev/null 2>&1") != 0) GTEST_SKIP() << "without ffmpeg";
+  const std::string tree = smallTree("tree.glb", 3);
+  for (const char* name : {"clip.mp4", "clip.gif"}) {
+    // Odd sizes, too.
+    runWell({"render", tree, "-o", path(name), "--size", "65x49", "--shadow-map", "64", "--light",
+             "standard", "--frames", "0:2", "--fps", "10"});
+    EXPECT_GT(std::filesystem::file_size(path(name)), 500u) << name;
+  }
+  // Nothing but these and the tree is left.
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(path(""))) {
+    (void)entry;
+    ++files;
+  }
+  EXPECT_EQ(files, 3u);
+}
+
+TEST_F(CommandLineRender, ReportOfMotion) {
+  const std::string tree = smallTree("tree.glb", 3);
+  const Json report = Json::parse(
+      runWell({"report", "motion", tree, "-o", path("motion"), "--size", "48x60", "--json"}));
+  for (const Json& beam : report["beams"]) {
+    EXPECT_NEAR(beam["length"], 1.0, 0.01);
+    EXPECT_LT(beam["farthest"], 0.05);
+  }
+  for (const Json& row : report["spectra"]) {
+    if (row["texture"] == "separable")
+      EXPECT_LT(row["l1_error"], 0.1);
+    else
+      EXPECT_GT(row["l1_error"], 0.2);
+  }
+  EXPECT_GE(report["levels"].size(), 2u);
+  const std::string page = textOf(path("motion/index.html"));
+  for (const char* name : {"figure4-8.svg", "figure4-10.svg", "figure4-14-2.svg", "tree-16-4.png"})
+    EXPECT_NE(page.find(name), std::string::npos) << name;
+  EXPECT_GT(
+      difference(readImage(path("motion/tree-16-0.png")), readImage(path("motion/tree-16-4.png"))),
+      0.05);
 }
 
 TEST_F(CommandLineRender, FiguresOfTheSky) {

@@ -10,6 +10,7 @@
 #include "shared/sh.h"
 #include "shared/sky.h"
 #include "shared/sky_formula.h"
+#include "shared/sway.h"
 #include "shared/tone.h"
 
 // Every shared function of the renderer, called with eight numbers in [0, 1]: compiled as C++ and
@@ -33,8 +34,12 @@ struct SharedResults {
   vec4 through;    // leafBasis, leafDiffuseTranslucence
   vec4 gloss;      // shIrradianceAlong, cookTorrance
   vec4 direction;  // leafDirection, z of leafEvenDirection
+  vec4 bent;       // bentByBeam of a position, x of its normal
+  vec4 turned;     // turnedLeaf of a position, x of its normal
+  vec4 driven;     // branchAmplitudes, leafTurns
+  vec4 windy;      // gustySpeed / 10, motionUv, windUv's x
 };
-SHARED_SIZE(SharedResults, 240);
+SHARED_SIZE(SharedResults, 304);
 
 SHARED_FUNCTION SharedResults evaluateShared(vec4 a, vec4 b) {
   vec3 n = normalize(vec3(a.x - 0.5f, a.y - 0.5f, a.z - 0.45f));
@@ -91,6 +96,46 @@ SHARED_FUNCTION SharedResults evaluateShared(vec4 a, vec4 b) {
                  cookTorrance(n, l, v, 0.1f + 0.4f * a.x, 1.2f + 0.5f * b.y));
   r.direction = vec4(leafDirection(coefficients), leafEvenDirection(coefficients).z);
   r.through = vec4(basis, leafDiffuseTranslucence(vec3(2.0f), color, a.x, behind).y);
+
+  MotionBeam beam;
+  beam.root = vec3(a.x, a.y, a.z);
+  beam.span = 0.5f + a.w;
+  beam.t = n;
+  beam.r = normalize(cross(n, vec3(0.3f, 0.5f, 0.8f)));
+  beam.c2 = 0.3f;
+  beam.c4 = -0.1f + 0.1f * b.x;
+  MotionDrive drive;
+  drive.trajectory.offset = uvec2(uint(a.x * 4.0e9f), uint(a.y * 4.0e9f));
+  drive.trajectory.velocity = uvec2(uint(a.z * 4.0e7f), uint(a.w * 1.0e6f));
+  drive.mean = 0.002f * b.y;
+  drive.swing = 0.001f * b.z;
+  MovedVertex vertex;
+  vertex.position = vec3(b.x, b.y, b.z);
+  vertex.normal = l;
+  vec2 amplitudes = branchAmplitudes(beam, drive, l, 12.0f * b.w, vec2(a.x - 0.5f, b.x - 0.5f));
+  MovedVertex bent = bentByBeam(beam, b.w, amplitudes, vertex);
+  r.bent = vec4(bent.position, bent.normal.x);
+  MotionLeaf leaf;
+  leaf.stalk = vec3(a.x, a.y, a.z);
+  leaf.axis = n;
+  leaf.normal = beam.r;
+  leaf.flutter = 0.01f * b.x;
+  leaf.lean = 0.01f * b.y;
+  leaf.twist = 0.01f * b.z;
+  vec2 turns = leafTurns(leaf, l, 12.0f * a.w, vec2(b.x - 0.5f, b.y - 0.5f));
+  MovedVertex turned = turnedLeaf(leaf, turns, vertex);
+  r.turned = vec4(turned.position, turned.normal.x);
+  r.driven = vec4(amplitudes.x, amplitudes.y, turns.x, turns.y);
+  MotionMoment moment;
+  moment.toward = vec4(l, 10.0f * a.x);
+  moment.gust_phase = a;
+  moment.gust_wave = 0.1f * b;
+  moment.scroll = b;
+  moment.drift = vec4(b.x, b.y, a.y, a.z);
+  moment.planes = vec4(0.5f, 0.5f, 0.7f, 0.1f);
+  vec2 way = branchUv(drive, uvec2(7u, 11u), uint(1.0e5f * b.w), b.z);
+  r.windy = vec4(0.1f * gustySpeed(moment, 30.0f * n), way.x, way.y,
+                 windUv(moment, vertex.position, int(2.99f * a.w)).x);
   return r;
 }
 

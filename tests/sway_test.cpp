@@ -29,7 +29,18 @@ class InWind : public testing::Test {
     }();
     return grown;
   }
+  static PlantMotion motionWith(int width, int height) {
+    MotionOptions options;
+    options.texture_width = width;
+    options.texture_height = height;
+    return plantMotion(plant(), options);
+  }
+  /// With small textures: all but spectra and repetition are the same.
   static const PlantMotion& motion() {
+    static const PlantMotion known = motionWith(512, 64);
+    return known;
+  }
+  static const PlantMotion& fullMotion() {
     static const PlantMotion known = plantMotion(plant());
     return known;
   }
@@ -40,10 +51,10 @@ class InWind : public testing::Test {
     return moved;
   }
   /// Branch b's deflections along r at `steps` times, in lengths of the branch.
-  static std::vector<double> track(std::uint32_t b, const Wind& wind, double step, int steps,
-                                   double start = 0.0) {
-    const MotionBranch& branch = motion().tree.branches[b];
-    const MotionTables& tables = *motion().tables;
+  static std::vector<double> track(const PlantMotion& motion, std::uint32_t b, const Wind& wind,
+                                   double step, int steps, double start = 0.0) {
+    const MotionBranch& branch = motion.tree.branches[b];
+    const MotionTables& tables = *motion.tables;
     std::vector<double> out;
     for (int i = 0; i < steps; ++i) {
       const double seconds = start + step * i;
@@ -116,7 +127,7 @@ TEST_F(InWind, DeflectionsGrowAsTheSpeedsSquare) {
   for (const std::uint32_t b : samples()) {
     const auto rms = [&](float speed) {
       double sum = 0;
-      const auto values = track(b, {.speed = speed, .gusts = 0.3f}, 0.37, 2000);
+      const auto values = track(motion(), b, {.speed = speed, .gusts = 0.3f}, 0.37, 2000);
       for (const double x : values) sum += x * x;
       return std::sqrt(sum / static_cast<double>(values.size()));
     };
@@ -168,7 +179,7 @@ TEST_F(InWind, BranchesHaveTheirOwnSpectra) {
     const double step = 1.0 / (10.0 * truth.frequency_hz);
     for (int record = 0; record < 250; ++record) {
       std::vector<double> signal =
-          track(b, {.speed = 1.0f, .gusts = 0.0f}, step, kRecord, 1000.0 * record);
+          track(fullMotion(), b, {.speed = 1.0f, .gusts = 0.0f}, step, kRecord, 1000.0 * record);
       double mean = 0.0;
       for (const double x : signal) mean += x / kRecord;
       spectrum.add([&](int i) { return signal[static_cast<std::size_t>(i)] - mean; });
@@ -205,7 +216,7 @@ TEST_F(InWind, DoesNotRepeatWithinAnHour) {
     constexpr double kStep = 0.4;
     constexpr std::size_t kCount = 14000, kLongest = 9000;  // an hour
     const std::vector<double> signal =
-        track(b, {.speed = 1.0f, .gusts = 0.0f}, kStep, static_cast<int>(kCount));
+        track(fullMotion(), b, {.speed = 1.0f, .gusts = 0.0f}, kStep, static_cast<int>(kCount));
     double most = 0.0;
     for (std::size_t lag = 25; lag <= kLongest; lag += 7) {
       const std::vector<double> first(signal.begin(), signal.end() - static_cast<long>(lag));

@@ -236,7 +236,7 @@ TEST_F(CommandLine, InspectFindsAndDrawsBranches) {
   EXPECT_EQ(lines, branches);
   EXPECT_EQ(used, vertices);
   EXPECT_EQ(objects, json["branches_by_level"].size());
-  EXPECT_NE(runWell({"inspect", tree, "--skeleton", path("tree.png")}).find("levels, found"),
+  EXPECT_NE(runWell({"inspect", tree, "--skeleton", path("tree.png")}).find("levels, known"),
             std::string::npos);
   const Image drawing = readImage(path("tree.png"));
   std::size_t drawn = 0;

@@ -280,10 +280,13 @@ TEST_F(InWind, LeavesDoNotTear) {
       place = tables.beams[beam].places.x;
       beam = motion().tree.branches[beam].parent;
     }
+    const auto& now_at = moved.meshes[leaf.mesh].positions;
     for (std::uint32_t k = 0; k < leaf.triangle_count; ++k)
       for (std::size_t c = 0; c < 3; ++c) {
-        const std::uint32_t v =
-            mesh.indices[3 * std::size_t{plant().leaf_triangles[leaf.first_triangle + k]} + c];
+        const std::size_t first = 3 * std::size_t{plant().leaf_triangles[leaf.first_triangle + k]};
+        const std::uint32_t v = mesh.indices[first + c], next = mesh.indices[first + (c + 1) % 3];
+        worst = std::max(worst, std::abs(glm::length(now_at[v] - now_at[next]) -
+                                         glm::length(mesh.positions[v] - mesh.positions[next])));
         const float rest = glm::length(mesh.positions[v] - leaf.stalk);
         const float now = glm::length(moved.meshes[leaf.mesh].positions[v] - stalk.position);
         worst = std::max(worst, std::abs(now - rest));

@@ -275,8 +275,8 @@ TEST_F(WindFilesTest, RecordsSayTheBranchesAndWhereTheirNumbersAreFrom) {
     const MotionBranch& beam = motion_->tree.branches[b];
     EXPECT_EQ(record["parent"], beam.parent == kNone ? Json(nullptr) : Json(beam.parent));
     EXPECT_FLOAT_EQ(record["length_m"], beam.length);
-    EXPECT_NEAR(record["frequency_hz"].get<double>(), 2.55 * std::pow(double{beam.length}, -0.59),
-                1e-4);
+    EXPECT_NEAR(record["frequency_hz"].get<double>(),
+                std::min(2.55 * std::pow(double{beam.length}, -0.59), 15.0), 1e-4);
     for (const auto& [key, value] : record.items()) {
       const std::string base = key == "bend_c2" || key == "bend_c4" ? "bend_c2, bend_c4" : key;
       EXPECT_TRUE(key == "branch" || key == "level" || json["provenance"].contains(base)) << key;
@@ -616,9 +616,14 @@ TEST_F(WindClip, ClosesItsLoop) {
   for (const Json& sampler : animation["samplers"]) {
     std::size_t n = 0;
     const auto keys = file.values(sampler["output"], &n);
-    EXPECT_TRUE(std::equal(keys.begin(), keys.begin() + static_cast<long>(n),
-                           keys.end() - static_cast<long>(n)) ||
-                n == 4);  // turns may have the other sign
+    double same = 0.0, other = 0.0;  // turns may have the other sign
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto first_key = static_cast<double>(keys[i]),
+                 last_key = static_cast<double>(keys[keys.size() - n + i]);
+      same = std::max(same, std::abs(first_key - last_key));
+      other = std::max(other, std::abs(first_key + last_key));
+    }
+    EXPECT_LT(n == 4 ? std::min(same, other) : same, 1e-5);
   }
   const double end = options.seconds, step = 1.0 / options.fps;
   const auto nodes = shown(file);

@@ -142,6 +142,67 @@ TEST_F(WindRender, AllPassesAgreeWithTheCpu) {
   }
 }
 
+// Each item and place finds its own among the others': a still one first, then two kinds that
+// move, at two places each.
+TEST_F(WindRender, ManyItemsMoveAsEachAlone) {
+  GrowOptions options;
+  options.species = "silver-birch";
+  options.seed = 5;
+  options.texture_size = 32;
+  options.leaf_form = LeafForm::kCard;
+  options.set = {{"Levels", "2"}};
+  const Plant birch = grow(options);
+  MotionOptions small;
+  small.texture_width = 512;
+  small.texture_height = 256;
+  const PlantMotion birch_motion = plantMotion(birch, small);
+  const auto placed = [](float x, float z, float turn, float size) {
+    return glm::scale(glm::rotate(glm::translate(glm::mat4(1.0f), glm::vec3(x, 0.0f, z)), turn,
+                                  glm::vec3(0, 1, 0)),
+                      glm::vec3(size));
+  };
+  const std::vector<glm::mat4> maples{placed(-2, 0, 0, 1), placed(3, 0, 1, 1)},
+      birches{placed(-4, -6, 2, 0.4f), placed(2, -6, 4, 0.4f)};
+  View windy = view();
+  windy.wind = kFresh;
+  windy.seconds = 31.0;
+  windy.camera = {{0.0f, 3.0f, 14.0f}, {0.0f, 2.0f, 0.0f}, 0.6f};
+  windy.terms.shadow = false;  // maps of the sun lie around what may move
+  const Plant post = standingTube(0.2f, 0.0f, 2.0f);
+  Scene blown, still;
+  for (Scene* scene : {&blown, &still}) {
+    scene->ground = true;
+    scene->items = {{&post, nullptr}, {&tree(), nullptr, maples}, {&birch, nullptr, birches}};
+  }
+  blown.items[1].motion = &motion();
+  blown.items[2].motion = &birch_motion;
+  // By the CPU; the post is the scene's first place, so the others' numbers are 1 to 4.
+  const auto movedBy = [&](const std::array<std::uint32_t, 4>& numbers) {
+    std::vector<Plant> plants;
+    for (std::size_t k = 0; k < 4; ++k) {
+      plants.push_back(k < 2 ? tree() : birch);
+      movePlant(k < 2 ? motion() : birch_motion, windy.wind, windy.seconds,
+                {k < 2 ? maples[k] : birches[k - 2], numbers[k]}, plants.back());
+    }
+    Scene scene;
+    scene.ground = true;
+    scene.items = {{&post, nullptr}};
+    for (std::size_t k = 0; k < 4; ++k)
+      scene.items.push_back({&plants[k], nullptr, {k < 2 ? maples[k] : birches[k - 2]}});
+    return draw(scene, windy);
+  };
+  const Image gpu = draw(blown, windy), rest = draw(still, windy);
+  const double off = meanFlip(gpu, movedBy({1, 2, 3, 4}));
+  // Edges of leaves that are cut out are drawn by their number in the scene, which differs: so much
+  // is off at rest, too.
+  windy.wind.speed = 0.0f;
+  const double floor = meanFlip(rest, movedBy({1, 2, 3, 4}));
+  windy.wind = kFresh;
+  EXPECT_LT(off, 1.25 * floor);
+  EXPECT_LT(off, 0.2 * meanFlip(gpu, rest));
+  EXPECT_LT(off, 0.5 * meanFlip(gpu, movedBy({2, 1, 4, 3})));
+}
+
 TEST_F(WindRender, TreesOfOneKindAreNotInUnison) {
   const auto first = branchAmplitudes(motion(), kFresh, 5.0, {glm::mat4(1.0f), 0});
   const auto second = branchAmplitudes(motion(), kFresh, 5.0, {glm::mat4(1.0f), 1});

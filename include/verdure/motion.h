@@ -114,7 +114,8 @@ struct PlantMotion {
 /// threads. Takes about a second: four textures are made.
 PlantMotion plantMotion(const Plant& plant, const MotionOptions& options = {});
 
-/// Where a plant stands, and which of its kind it is: no two move alike.
+/// Where a plant stands, and its number among all places of the scene, items in their order: no two
+/// move alike.
 struct MotionPlace {
   glm::mat4 world_from_plant{1.0f};  ///< may turn, mirror and scale evenly
   std::uint32_t instance = 0;

@@ -37,11 +37,12 @@ void runReference(const ReferenceCommand& command) {
   progress.show("loading");
   Plant plant = loadPlant(command.input, command.load);
   restoreLeafNormals(plant);
-  if (wind.speed > 0.0f)
-    movePlant(motionFor(plant), wind, command.wind.time.value_or(0.0), {}, plant);
   const Scene scene = command.sceneOf(plant, nullptr);
   options.camera = command.cameraFor(
       scene, static_cast<float>(options.width) / static_cast<float>(options.height));
+  // Looked at as the plant at rest is, as render does.
+  if (wind.speed > 0.0f)
+    movePlant(motionFor(plant), wind, command.wind.time.value_or(0.0), {}, plant);
   progress.show("tracing", 0.0);
   options.progress = [&progress](double share) { progress.show("tracing", share); };
   const ReferencePicture picture = renderReference(scene, light, options);

@@ -151,6 +151,8 @@ std::optional<std::pair<int, int>> framesOf(const RenderCommand& command) {
   if (last < first)
     throw Error("--frames", fmt::format("{} is before {}", last, first),
                 fmt::format("write {}:{}", last, first));
+  if (last >= 1000000)
+    throw Error("--frames", fmt::format("{} is out of range", last), "choose up to 999999");
   if (!command.motion_vectors.empty())
     throw Error("--motion-vectors", "is for one picture, not for frames", "leave one out");
   return std::pair(first, last);
@@ -276,9 +278,12 @@ void runRender(const RenderCommand& command) {
   Scene scene = command.sceneOf(plant, light ? &*light : nullptr);
   if (transfer) scene.items[0].transfer = &*transfer;
   std::optional<PlantMotion> motion;
+  std::vector<std::string> notes;  // how its branches were found
   if (view.wind.speed > 0.0f) {
     progress.show("motion");
     motion = motionFor(plant);
+    for (const std::string& note : plant.notes)
+      if (note.starts_with("branches: ")) notes.push_back(note);
     scene.items[0].motion = &*motion;
   }
   view.camera =
@@ -296,7 +301,7 @@ void runRender(const RenderCommand& command) {
   const std::string light_name = command.light == "best"
                                      ? (transfer ? "best (transfer vectors)" : "best (baked)")
                                      : command.light;
-  if (command.json)
+  if (command.json) {
     fmt::print("{}\n",
                nlohmann::ordered_json{{"device", renderer.deviceName()},
                                       {"light", light_name},
@@ -311,12 +316,15 @@ void runRender(const RenderCommand& command) {
                                       {"average_kcd_m2", frame.average_luminance},
                                       {"white", frame.white},
                                       {"shadow_cascades", frame.shadow_cascades},
+                                      {"notes", notes},
                                       {"validation_messages", renderer.validationMessages()}}
                    .dump(2));
-  else
-    fmt::print("{}: {}x{}, {} light, on {}; shadow {:.1f} ms, colour {:.1f} ms, tone {:.1f} ms\n",
-               command.output, view.width, view.height, light_name, renderer.deviceName(),
-               frame.times.shadow_ms, frame.times.color_ms, frame.times.tone_ms);
+    return;
+  }
+  for (const std::string& note : notes) fmt::print("note: {}\n", note);
+  fmt::print("{}: {}x{}, {} light, on {}; shadow {:.1f} ms, colour {:.1f} ms, tone {:.1f} ms\n",
+             command.output, view.width, view.height, light_name, renderer.deviceName(),
+             frame.times.shadow_ms, frame.times.color_ms, frame.times.tone_ms);
 }
 
 }  // namespace verdure::app

@@ -41,6 +41,8 @@ bool onPath(const char* program) {
 
 Video::Video(std::string path, int fps) : path_(std::move(path)), fps_(fps) {
   checkOutput(path_, {".mp4", ".webm", ".gif", ".png"});
+  if (fs::path(path_).extension() == ".gif" && fps_ > 50)
+    throw Error("--fps", fmt::format("{} is more than a .gif can show", fps_), "choose 1 to 50");
   if (isFilm(path_) && !onPath("ffmpeg"))
     throw Error(path_, "films are written by ffmpeg, which is not installed",
                 "install it (apt-get install ffmpeg), or name a .png for numbered pictures");
@@ -66,15 +68,17 @@ void Video::start(int width, int height) {
     words.insert(words.end(), more.begin(), more.end());
   };
   // Players want even sizes and half the colour.
-  constexpr const char* kEven = "pad=ceil(iw/2)*2:ceil(ih/2)*2";
+  constexpr const char* kEven = "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709";
+  if (path.extension() != ".gif")
+    say({"-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"});
   if (path.extension() == ".mp4")
     say({"-vf", kEven, "-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "18", "-movflags",
          "+faststart"});
   else if (path.extension() == ".webm")
     say({"-vf", kEven, "-c:v", "libvpx-vp9", "-pix_fmt", "yuv420p", "-crf", "28", "-b:v", "0"});
   else
-    say({"-vf", "split[a][b];[a]palettegen[p];[b][p]paletteuse"});
-  words.push_back(unfinished_);
+    say({"-vf", "split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1"});
+  words.push_back("file:" + unfinished_);
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -116,11 +120,15 @@ void Video::finish() {
   close(pipe_);
   pipe_ = -1;
   int status = 0;
-  waitpid(process_, &status, 0);
+  pid_t ended = 0;
+  do ended = waitpid(process_, &status, 0);
+  while (ended < 0 && errno == EINTR);
   process_ = -1;
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+  if (ended < 0 || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
     throw Error(path_, "ffmpeg could not make a film of this", "see what it said");
-  fs::rename(unfinished_, path_);
+  std::error_code failed;
+  fs::rename(unfinished_, path_, failed);
+  if (failed) throw Error(path_, "the film could not be put in its place: " + failed.message());
   unfinished_.clear();
 }
 

@@ -15,7 +15,9 @@ class Video {
   Video(std::string path, int fps);
   Video(const Video&) = delete;
   Video& operator=(const Video&) = delete;
-  ~Video();  ///< a film that was not finished leaves nothing
+  /// A film that was not finished leaves nothing; a process that is killed may leave
+  /// `.NAME.PID.mp4`.
+  ~Video();
 
   /// All of one size. `number`: of the frame, in the names of pictures.
   void add(const Image& image, int number);

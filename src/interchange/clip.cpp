@@ -62,6 +62,9 @@ void checkOptions(const ClipOptions& options, const Plant& plant,
   checkPlantPath(path);
   if (!matchesSource(plant)) return;
   const GltfDocument& document = plant.source->gltf;
+  if (!document.list("animations").empty())
+    throw Error(path.string(), "the plant's file has animations of its own",
+                "export the plant without them");
   for (const Json& node : document.list("nodes")) {
     if (extension(node, "EXT_mesh_gpu_instancing") != nullptr)
       throw Error(path.string(), "the plant's file has instances, a skin moves one plant",

@@ -43,9 +43,10 @@ std::string windRecords(const Plant& plant, const PlantMotion& motion,
          "computed: deflection c2 x^2 + c4 x^4 of a tapered cantilever under an even load, Habel "
          "2009, (4.7), (4.8)"},
         {"mass_kg", "computed: wood 900 kg/m^3, leaves 0.2 kg/m^2, of all that it carries"},
-        {"frequency_hz", leafless ? "computed: 2.5 * 2.55 length_m^-0.59, Habel 2009, (4.20), "
-                                    "without leaves"
-                                  : "computed: 2.55 length_m^-0.59, Habel 2009, (4.20)"},
+        {"frequency_hz", leafless
+                             ? "computed: 2.5 * 2.55 length_m^-0.59, Habel 2009, (4.20), "
+                               "without leaves, at most 15"
+                             : "computed: 2.55 length_m^-0.59, Habel 2009, (4.20), at most 15"},
         {"damping_ratio", "chosen: by level"},
         {"gain_mean_per_m2s2",
          "computed: the tip's deflection downwind in lengths, by drag 0.3, times the wind's speed "

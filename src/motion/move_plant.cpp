@@ -59,7 +59,8 @@ shared::MotionMoment momentOf(const Wind& wind, double seconds, float extent) {
     moment.gust_wave[i] = static_cast<float>(frequency / std::max(double{wind.speed}, 1.0));
   }
   const glm::dvec3 way = wind.way.value_or(toward * (double{wind.speed} * seconds));
-  const glm::dvec3 at = (way + kDrift * glm::dvec3(glm::length(way))) / double{extent};
+  const double along = wind.way ? glm::length(way) : double{wind.speed} * seconds;
+  const glm::dvec3 at = (way + kDrift * along) / double{extent};
   const auto scrolled = [](double x) { return static_cast<float>(fractionOf(x)); };
   moment.scroll = {scrolled(at.x), scrolled(at.y), scrolled(at.y), scrolled(at.z)};
   moment.drift = {scrolled(at.x), scrolled(at.z), wind.gusts, time.fraction};

@@ -193,6 +193,15 @@ void keepStems(FileStems stems, Plant& plant) {
   }
   for (Mesh& mesh : plant.meshes)
     if (mesh.kind == PartKind::kFoliage || count == 0) mesh.branch_of_vertex.clear();
+  // A tool may keep what is known of the branches and drop what hangs on them.
+  bool any = std::any_of(plant.leaves.begin(), plant.leaves.end(),
+                         [](const Leaf& leaf) { return leaf.branch != kNone; });
+  for (const Mesh& mesh : plant.meshes)
+    any = any || std::any_of(mesh.branch_of_vertex.begin(), mesh.branch_of_vertex.end(),
+                             [](std::uint32_t branch) { return branch != kNone; });
+  if (any || plant.branches.empty()) return;
+  plant.branches.clear();
+  plant.notes.push_back("branches left out: no vertex says which is its own");
 }
 
 }  // namespace verdure

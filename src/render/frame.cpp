@@ -348,8 +348,9 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
   device_->submit([&](const vk::raii::CommandBuffer& commands) {
     timers_.reset(commands);
     timers_.stamp(commands, 0);
-    motion_pass_.record(commands, scene.motion(), view.wind, view.seconds, false);
-    if (view.last)
+    if (scene.moves())
+      motion_pass_.record(commands, scene.motion(), view.wind, view.seconds, false);
+    if (scene.moves() && view.last)
       motion_pass_.record(commands, scene.motion(), view.last->wind, view.last->seconds, true);
     timers_.stamp(commands, 1);
     sky_image_.record(commands);

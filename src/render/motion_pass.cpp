@@ -1,6 +1,9 @@
 #include "render/motion_pass.h"
 
+#include <string>
+
 #include "motion/motion_texture.h"
+#include "verdure/error.h"
 
 namespace verdure {
 namespace {
@@ -31,7 +34,7 @@ MotionLayouts::MotionLayouts(const gpu::Device& device)
 
 GpuMotion::GpuMotion(const gpu::Device& device, gpu::Upload& upload, const PackedMotions& packed,
                      const gpu::Buffer& instances, const MotionLayouts& layouts)
-    : items_(packed.items) {
+    : items_(packed.items), instances_(*instances.buffer) {
   constexpr auto kStorage = vk::BufferUsageFlagBits::eStorageBuffer;
   const auto stored = [&upload](const auto& data) {
     return upload.buffer(std::span(data), kStorage);
@@ -40,7 +43,16 @@ GpuMotion::GpuMotion(const gpu::Device& device, gpu::Upload& upload, const Packe
   drives_ = stored(packed.drives);
   leaves_ = stored(packed.leaves);
   hangs_ = stored(packed.hangs);
+  const auto check = [&device](vk::DeviceSize bytes) {
+    if (bytes > device.limits().maxStorageBufferRange)
+      throw Error(device.name(),
+                  "the motion of this scene takes " + std::to_string(bytes >> 20) +
+                      " MiB at once, more than this device reads",
+                  "draw fewer kinds of plants in wind");
+  };
+  for (const gpu::Buffer* buffer : {&beams_, &drives_, &leaves_, &hangs_}) check(buffer->size);
   const auto results = [&](std::size_t bytes) {
+    check(bytes);
     return gpu::makeBuffer(device, bytes, kStorage, gpu::MemoryUse::kDevice);
   };
   for (std::size_t slot = 0; slot < 2; ++slot) {
@@ -52,6 +64,7 @@ GpuMotion::GpuMotion(const gpu::Device& device, gpu::Upload& upload, const Packe
     const std::vector<std::uint32_t>& wind = item.tables->wind.texels;
     texels.insert(texels.end(), wind.begin(), wind.end());
     texels_.push_back(stored(texels));
+    check(texels_.back().size);
     for (std::size_t slot = 0; slot < 2; ++slot) {
       gpu::DescriptorSet& set = job_sets_[slot].emplace_back(device, layouts.job);
       std::uint32_t binding = 0;
@@ -89,6 +102,8 @@ void MotionPass::record(const vk::raii::CommandBuffer& commands, const GpuMotion
     turn(*buffer, gpu::Use::kVertexInput, gpu::Use::kVertexStorage);
   for (const gpu::Buffer* buffer : {&motion.beams_, &motion.drives_, &motion.leaves_})
     turn(*buffer, gpu::Use::kVertexInput, gpu::Use::kComputeStorage);
+  gpu::bufferBarrier(commands, motion.instances_, gpu::Use::kVertexInput,
+                     gpu::Use::kComputeStorage);
   for (const gpu::Buffer& texels : motion.texels_)
     turn(texels, gpu::Use::kVertexInput, gpu::Use::kComputeStorage);
   for (const gpu::Buffer* results : {&motion.amplitudes_[slot], &motion.turns_[slot]})

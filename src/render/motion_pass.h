@@ -20,7 +20,8 @@ struct MotionLayouts {
 /// What moves of a scene, on the GPU, and how far it is bent in this frame and in the last one.
 class GpuMotion {
  public:
-  /// `instances`: the scene's places, 64 bytes each.
+  /// `instances`: the scene's places, 64 bytes each. Throws Error where the device's storage
+  /// buffers are too small.
   GpuMotion(const gpu::Device& device, gpu::Upload& upload, const PackedMotions& packed,
             const gpu::Buffer& instances, const MotionLayouts& layouts);
   /// For set 2 of the pipelines that draw plants.
@@ -29,6 +30,7 @@ class GpuMotion {
  private:
   friend class MotionPass;
   std::vector<PackedMotion> items_;
+  vk::Buffer instances_;
   gpu::Buffer beams_, drives_, leaves_, hangs_;
   std::vector<gpu::Buffer> texels_;                          ///< of each item: levels, then wind
   std::array<gpu::Buffer, 2> amplitudes_, turns_;            ///< of this frame, of the last

@@ -4,8 +4,40 @@
 
 namespace verdure {
 
+namespace {
+
+/// How alike two places are turned: 3 for the same, mirroring included.
+float alike(const PackedMotions::Rows& a, const PackedMotions::Rows& b) {
+  float sum = 0.0f;
+  for (int c = 0; c < 3; ++c) {
+    const glm::vec3 u(a[0][c], a[1][c], a[2][c]), v(b[0][c], b[1][c], b[2][c]);
+    sum += glm::dot(u, v) / std::max(glm::length(u) * glm::length(v), 1e-30f);
+  }
+  return sum;
+}
+
+/// The one of the first `count` seats that is turned most like the k-th; of equals another for
+/// each.
+std::uint32_t donorOf(std::uint32_t k, std::uint32_t count,
+                      std::span<const PackedMotions::Rows> seats) {
+  if (k < count) return k;
+  std::uint32_t best = k % count;
+  float most = alike(seats[k], seats[best]);
+  for (std::uint32_t i = 1; i < count; ++i) {
+    const std::uint32_t other = (k + i) % count;
+    const float value = alike(seats[k], seats[other]);
+    if (value <= most + 1e-3f) continue;
+    most = value;
+    best = other;
+  }
+  return best;
+}
+
+}  // namespace
+
 std::vector<glm::uvec4> PackedMotions::add(const PlantMotion& motion, std::uint32_t first_instance,
-                                           std::uint32_t instances, std::size_t words) {
+                                           std::span<const Rows> seats_of_item, std::size_t words) {
+  const auto instances = static_cast<std::uint32_t>(seats_of_item.size());
   const MotionTables& tables = *motion.tables;
   PackedMotion item{motion.tables};
   item.first_beam = static_cast<std::uint32_t>(beams.size());
@@ -28,15 +60,17 @@ std::vector<glm::uvec4> PackedMotions::add(const PlantMotion& motion, std::uint3
   const auto leaf_count = static_cast<std::uint32_t>(tables.leaves.size());
   const std::size_t each = std::max<std::size_t>(2 * std::size_t{beam_count} + leaf_count, 1);
   item.places = static_cast<std::uint32_t>(
-      std::clamp<std::size_t>(words / each, 1, std::min(std::max(instances, 1u), 65535u)));
+      std::clamp<std::size_t>((words - std::min(words, 2 * std::size_t{amplitudes} + turns)) / each,
+                              1, std::min(std::max(instances, 1u), 65535u)));
+  if (instances == 0) item.places = 0;
   item.amplitude_base = amplitudes;
   item.turn_base = turns;
   amplitudes += item.places * beam_count;
   turns += item.places * leaf_count;
   std::vector<glm::uvec4> seats;
   for (std::uint32_t k = 0; k < instances; ++k) {
-    const std::uint32_t place = k % item.places;
-    const glm::uvec2 phase = motionPhase(place);
+    const std::uint32_t place = donorOf(k, item.places, seats_of_item);
+    const glm::uvec2 phase = motionPhase(first_instance + place);
     // Indices count from the scene's first beam; unsigned numbers wrap.
     seats.emplace_back(item.amplitude_base + place * beam_count - item.first_beam,
                        item.turn_base + place * leaf_count - item.first_leaf, phase.x, phase.y);
@@ -52,6 +86,10 @@ void PackedMotions::addVertices(const std::vector<glm::uvec2>& mesh) {
       hang.x += (hang.x & shared::kHangsOnLeaf) != 0 ? item.first_leaf : item.first_beam;
     hangs.push_back(hang);
   }
+}
+
+void PackedMotions::finish() {
+  if (items.empty()) hangs = {};
 }
 
 void PackedMotions::addStill(std::size_t count) {

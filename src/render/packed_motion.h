@@ -1,7 +1,9 @@
 #ifndef VERDURE_RENDER_PACKED_MOTION_H_
 #define VERDURE_RENDER_PACKED_MOTION_H_
 
+#include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "motion/motion_tables.h"
@@ -13,13 +15,14 @@ namespace verdure {
 struct PackedMotion {
   std::shared_ptr<const MotionTables> tables;
   std::uint32_t first_beam = 0, first_leaf = 0, first_instance = 0;
-  std::uint32_t instances = 0;
-  /// Places whose motion is computed; where there are more, the k-th moves as the (k % places)-th.
+  std::uint32_t instances = 0;  ///< where it stands
+  /// Places whose motion is computed: the first of them. Any others move as one of these does that
+  /// stands turned alike, see PackedMotions::add().
   std::uint32_t places = 0;
   std::uint32_t amplitude_base = 0, turn_base = 0;
 };
 
-/// All that moves in a scene; empty where nothing does.
+/// All that moves in a scene; finish() leaves nothing where nothing does.
 struct PackedMotions {
   std::vector<PackedMotion> items;
   std::vector<shared::MotionBeam> beams;
@@ -28,14 +31,19 @@ struct PackedMotions {
   std::vector<glm::uvec2> hangs;            ///< of each vertex of the scene
   std::uint32_t amplitudes = 0, turns = 0;  ///< how many results there are
 
-  /// `words`: of 4 bytes that all results may take. Returns which results instance k of the item
-  /// reads, see instance.glsl.
+  /// Rows of world_from_plant.
+  using Rows = std::array<glm::vec4, 3>;
+  /// An item that stands at `seats`, the scene's from `first_instance` on. `words`: of 4 bytes that
+  /// the results of the whole scene may take. Returns which results each of its places reads, see
+  /// instance.glsl.
   std::vector<glm::uvec4> add(const PlantMotion& motion, std::uint32_t first_instance,
-                              std::uint32_t instances, std::size_t words);
+                              std::span<const Rows> seats, std::size_t words);
   /// The next vertices of the scene: a mesh of an item that moves, the last one added, or `count`
   /// that stand still.
   void addVertices(const std::vector<glm::uvec2>& mesh);
   void addStill(std::size_t count);
+  /// Behind the last item.
+  void finish();
 };
 
 }  // namespace verdure

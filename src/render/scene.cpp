@@ -19,7 +19,7 @@ namespace {
 
 // A buffer of transfer vectors takes at most 64 MiB: half of what every device allows.
 constexpr std::size_t kTransferWords = std::size_t{1} << 24;
-/// As much for the motion of one kind of plant.
+/// As much for the motion of all plants.
 constexpr std::size_t kMotionWords = std::size_t{1} << 24;
 
 /// Alpha as a grey picture.
@@ -54,6 +54,7 @@ class Packer {
     if (leaf_tint_.w > 0.0) out_.leaf_tint = glm::dvec3(leaf_tint_) / leaf_tint_.w;
     std::stable_partition(out_.draws.begin(), out_.draws.end(),
                           [](const Draw& draw) { return !draw.foliage; });
+    out_.motions.finish();
     out_.ground = scene_.ground;
     out_.ground_height = scene_.ground_height;
     return std::move(out_);
@@ -130,9 +131,12 @@ class Packer {
     if (!fits)
       throw Error(item.plant->name, "its motion belongs to another plant",
                   "make one with plantMotion()");
-    const auto count = static_cast<std::uint32_t>(item.world_from_plant.size());
-    const auto seats = out_.motions.add(*item.motion, first_instance, count, kMotionWords);
-    for (std::uint32_t k = 0; k < count; ++k) out_.instances[first_instance + k].motion = seats[k];
+    std::vector<PackedMotions::Rows> rows;
+    for (std::size_t i = first_instance; i < out_.instances.size(); ++i)
+      rows.push_back(out_.instances[i].rows);
+    const auto seats = out_.motions.add(*item.motion, first_instance, rows, kMotionWords);
+    for (std::size_t k = 0; k < seats.size(); ++k)
+      out_.instances[first_instance + k].motion = seats[k];
   }
 
   /// Transfer vectors know the directions of the world: a plant that was turned has others.

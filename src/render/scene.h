@@ -136,6 +136,8 @@ class GpuScene {
   /// Of all that may move in the wind that was set.
   const Bounds& bounds() const { return bounds_; }
   const GpuMotion& motion() const { return *motion_; }
+  /// Whether anything does in the wind that was set.
+  bool moves() const { return bounds_wind_.has_value(); }
   bool ground() const { return ground_; }
   float groundHeight() const { return ground_height_; }
   const glm::vec3& leafTint() const { return leaf_tint_; }

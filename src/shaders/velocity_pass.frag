@@ -12,6 +12,7 @@ layout(location = 0) out vec2 out_way;
 
 void main() {
   if (kAlphaTest && texture(base_color, uv).a < draw.surface.x) discard;
-  vec2 way = now.xy / now.z - last.xy / max(last.z, 1e-6);
+  // What was behind the eye came from nowhere.
+  vec2 way = last.z > 0.0 ? now.xy / now.z - last.xy / last.z : vec2(0.0);
   out_way = way / vec2(frame.ray_right.w, frame.ray_down.w);
 }

@@ -78,7 +78,7 @@ struct MotionOptions {
   std::array<float, kMotionLevels> damping_ratio{0.3f, 0.2f, 0.2f, 0.2f};
   float spectrum_speed = 5.0f;  ///< v_m of (4.15), m/s, above 0: the spectrum's, not the strength's
   bool thesis_textures = false;  ///< radial ones, whose resonance is low and broad: for comparison
-  int texture_width = 2048, texture_height = 1024;  ///< of each level, see MotionTextureOptions
+  int texture_width = 2048, texture_height = 1024;  ///< of each texture, see MotionTextureOptions
 };
 
 /// How a branch answers wind; `mean` and `swing` for 1 m/s, growing as the speed's square, in

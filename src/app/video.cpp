@@ -6,11 +6,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 
 #include "app/commands.h"
-#include "base/files.h"
 #include "verdure/error.h"
 
 extern char** environ;

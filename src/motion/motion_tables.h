@@ -22,7 +22,7 @@ struct MotionTables {
   std::vector<shared::MotionDrive> drives;  ///< of each beam
   std::vector<shared::MotionLeaf> leaves;
   std::vector<std::vector<glm::uvec2>> hangs;  ///< of each vertex of each mesh
-  std::vector<std::uint32_t> texels;           ///< of all levels, see MotionDrive::texels
+  std::vector<std::uint32_t> texels;           ///< of all textures, see MotionDrive::texels
   std::vector<float> farthest;  ///< of each beam, the length of its texture's longest texel
   PackedMotionTexture wind;     ///< for leaves
   float wind_extent = 1.0f;     ///< of that, m
@@ -43,7 +43,7 @@ struct MotionTables {
 /// unless wind and time are what they should be.
 shared::MotionMoment momentOf(const Wind& wind, double seconds, float extent);
 
-/// What keeps the `instance`-th plant of its kind out of unison with the others.
+/// What keeps the plant at the scene's `instance`-th place out of unison with the others.
 glm::uvec2 motionPhase(std::uint32_t instance);
 
 /// Bilinear, as the shaders read it.

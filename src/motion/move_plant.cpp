@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <glm/gtc/constants.hpp>
 #include <glm/gtc/packing.hpp>
 
 #include "base/check.h"

@@ -4,8 +4,10 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "verdure/grass.h"
 #include "verdure/motion.h"
 #include "verdure/plant.h"
+#include "verdure/terrain.h"
 #include "verdure/transfer.h"
 
 /// What is looked at, and from where: the same for the renderer and for the reference.
@@ -33,6 +35,25 @@ struct SceneItem {
   const PlantMotion* motion = nullptr;  ///< may be null: it stands still in any wind
 };
 
+/// A kind of grass on the ground.
+struct GrassLayer {
+  const GrassSet* set = nullptr;
+  const CoverMap* cover = nullptr;  ///< where it grows how densely; null: everywhere
+  float density = 1.0f;             ///< times that, [0, 1]
+  float turn = 0.5f;                ///< of u and v against x and z, about the vertical, radians
+  bool mirrored = false;            ///< v runs against z
+  int most_slices = 16;             ///< on a ray, [1, 256]; what is open behind them is filled
+  float scatter = 0.6f;  ///< how far slices are off even distances, in shares of them, [0, 0.9]
+  bool middle = true;    ///< the level slice, where the set has one
+  /// Rays end at what stands in the grass; else it is hidden by whole pixels, where they are more
+  /// than about half covered.
+  bool ends_at_depth = true;
+  /// Slices that are nearer to each other than pixels are composited as what they look like on the
+  /// mean; else one by one, as in the thesis, with patterns that are none of the grass'.
+  bool medium = true;
+  float variation = 0.7f;  ///< share of the patches of tones that are laid over it, [0, 1]
+};
+
 /// Coordinates are relative to the origin of the first item's plant; a plant with another origin
 /// stands where the difference of both puts it. Scenes hundreds of kilometres from the coordinates'
 /// origin therefore look the same as at it.
@@ -40,6 +61,8 @@ struct Scene {
   std::vector<SceneItem> items;
   bool ground = true;  ///< textured ground plane at y = ground_height
   float ground_height = 0.0f;
+  const Terrain* terrain = nullptr;  ///< takes the plane's place
+  std::vector<GrassLayer> grass;     ///< on either; the first covers it, the others add to it
 };
 
 /// A camera that shows the whole scene from `azimuth` (as the sun's) and `elevation` (radians),

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/ground_options.h"
 #include "app/scene_options.h"
 #include "verdure/density.h"
 #include "verdure/grow.h"
@@ -143,6 +144,7 @@ float parseBloom(const ExposureOptions& options);
 
 struct RenderCommand : SceneOptions {
   std::string output;
+  GroundOptions ground;
   BakeParameters bake;
   bool bake_again =
       false;  ///< parameters of the bake were given: the file's own light is not theirs

@@ -87,8 +87,9 @@ void addBakeOptions(CLI::App& command, BakeParameters& bake, const char* group) 
 }
 
 /// The plant, the picture's size and the camera.
-void addSceneOptions(CLI::App& command, SceneOptions& scene) {
-  command.add_option("file", scene.input, "Plant: .glb .gltf .obj .fbx .dae .ply")->required();
+CLI::Option* addSceneOptions(CLI::App& command, SceneOptions& scene) {
+  CLI::Option* const file =
+      command.add_option("file", scene.input, "Plant: .glb .gltf .obj .fbx .dae .ply");
   addLoadOptions(command, scene.load);
   command.add_option("--size", scene.size, "WxH, pixels")->capture_default_str();
   command
@@ -98,6 +99,43 @@ void addSceneOptions(CLI::App& command, SceneOptions& scene) {
   command.add_option("--fov", scene.fov_deg, "Vertical field of view, degrees")
       ->capture_default_str();
   command.add_flag("--no-ground", scene.no_ground, "Leave the ground out");
+  return file;
+}
+
+void addGroundOptions(CLI::App& command, GroundOptions& ground) {
+  constexpr const char* kGroup = "Ground";
+  command
+      .add_option("--grass", ground.grass,
+                  "Species or folder of grass on the ground; repeat for more layers")
+      ->group(kGroup)
+      ->allow_extra_args(false);
+  command.add_option("--grass-density", ground.density, "Of each layer, by commas, 0 to 1")
+      ->group(kGroup)
+      ->delimiter(',');
+  command
+      .add_option("--grass-cover", ground.cover,
+                  "Picture over the terrain's area, white where a layer grows; one a layer")
+      ->group(kGroup)
+      ->allow_extra_args(false);
+  command.add_option("--grass-seed", ground.grass_seed, "Of species")
+      ->group(kGroup)
+      ->capture_default_str();
+  command.add_option("--grass-slices", ground.slices, "Most slices on a ray, 1 to 256")
+      ->group(kGroup)
+      ->capture_default_str();
+  command
+      .add_option("--terrain", ground.terrain,
+                  "hills, or heights as a PNG of 8 or 16 bits (default: a plane)")
+      ->group(kGroup);
+  command.add_option("--terrain-size", ground.terrain_size, "WxD along x and z, m")
+      ->group(kGroup)
+      ->capture_default_str();
+  command.add_option("--terrain-height", ground.terrain_height, "LOW,HIGH: of black and white, m")
+      ->group(kGroup)
+      ->capture_default_str();
+  command.add_option("--terrain-seed", ground.terrain_seed, "Of hills")
+      ->group(kGroup)
+      ->capture_default_str();
 }
 
 void addWindOptions(CLI::App& command, WindOptions& wind) {
@@ -326,6 +364,7 @@ int run(int argc, char** argv) {
   RenderCommand render;
   CLI::App* render_app = app.add_subcommand("render", "Render a plant to a picture");
   addSceneOptions(*render_app, render);
+  addGroundOptions(*render_app, render.ground);
   render_app
       ->add_option("-o,--output", render.output,
                    "File to write: .png, or .exr in kcd/m^2; for a film see --frames")
@@ -373,7 +412,7 @@ int run(int argc, char** argv) {
   ReferenceCommand reference;
   CLI::App* reference_app =
       app.add_subcommand("reference", "Path-trace a plant: the truth for render (CPU)");
-  addSceneOptions(*reference_app, reference);
+  addSceneOptions(*reference_app, reference)->required();
   reference_app
       ->add_option("-o,--output", reference.output, "File to write: .png, or .exr in kcd/m^2")
       ->required();

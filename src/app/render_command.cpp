@@ -190,6 +190,68 @@ Frame drawFilm(const RenderCommand& command, const std::pair<int, int>& frames, 
   return std::move(*first);
 }
 
+/// The plant that is shown, with the light that the view asks for.
+struct ShownPlant {
+  Plant plant;
+  std::optional<PlantTransfer> transfer;
+  std::optional<CrownLight> light;
+  std::optional<PlantMotion> motion;
+  double bake_seconds = 0.0;
+  std::vector<std::string> notes;  ///< how its branches were found
+
+  /// Light that the file lacks is baked, or done without.
+  ShownPlant(const RenderCommand& command, View& view, Progress& progress) {
+    // The preset `expressive` means the field of its paper.
+    const BakeField field = command.bake.fieldOr(
+        command.light == "expressive" ? BakeField::kMetaball : BakeField::kOpticalDepth);
+    progress.show("loading");
+    plant = loadPlant(command.input, command.load);
+    if (view.terms.ambient_source == AmbientSource::kTransfer) {
+      transfer = loadTransfer(command.input, plant);
+      if (!transfer && command.light == "best")
+        view.terms.ambient_source = AmbientSource::kBaked;
+      else if (!transfer)
+        throw Error(command.input,
+                    fmt::format("has no transfer vectors ({} is not there)",
+                                transferPath(command.input).string()),
+                    "trace them with verdure bake --transfer 5");
+    }
+    // The file's own bake, or one made now; a light without baked terms needs neither.
+    if (!command.bake_again) light = lightOfFile(plant);
+    const bool visible_terms = view.terms.ambient_source == AmbientSource::kLeafVisibility;
+    const bool baked_terms = view.terms.normal == NormalSource::kCrown || visible_terms ||
+                             view.terms.ambient_source == AmbientSource::kBaked;
+    if (!light && baked_terms) {
+      progress.show("baking");
+      if (field == BakeField::kMetaball) {
+        DensityBake bake = bakeDensity(plant, command.bake.checked());
+        light = std::move(bake.light);
+        bake_seconds = bake.report.seconds_total;
+      } else {
+        DepthBake bake = bakeOpticalDepth(plant, command.bake.checkedDepth());
+        light = std::move(bake.light);
+        bake_seconds = bake.report.seconds_total;
+      }
+    }
+    if (visible_terms) bake_seconds += addLeafVisibility(plant, progress, *light);
+    if (view.terms.normal == NormalSource::kLeaf) restoreLeafNormals(plant);
+    if (view.wind.speed > 0.0f) {
+      progress.show("motion");
+      motion = motionFor(plant);
+      for (const std::string& note : plant.notes)
+        if (note.starts_with("branches: ")) notes.push_back(note);
+    }
+  }
+
+  /// It alone; lives no longer than this.
+  Scene scene(const RenderCommand& command) const {
+    Scene scene = command.sceneOf(plant, light ? &*light : nullptr);
+    if (transfer) scene.items[0].transfer = &*transfer;
+    if (motion) scene.items[0].motion = &*motion;
+    return scene;
+  }
+};
+
 }  // namespace
 
 void runRender(const RenderCommand& command) {
@@ -223,11 +285,11 @@ void runRender(const RenderCommand& command) {
                   "choose auto or 1 to 4");
     view.shadow_cascades = command.cascades[0] - '0';
   }
-  // The preset `expressive` means the field of its paper.
-  const BakeField field = command.bake.fieldOr(
-      command.light == "expressive" ? BakeField::kMetaball : BakeField::kOpticalDepth);
-  const DensityOptions bake_options = command.bake.checked();
-  const DepthOptions depth_options = command.bake.checkedDepth();
+  command.bake.fieldOr(BakeField::kOpticalDepth);  // what is wrong is said before long work
+  command.bake.checked();
+  command.bake.checkedDepth();
+  if (command.input.empty() && !command.ground.any())
+    throw Error("render", "no plant is named", "name a file, or --grass or --terrain");
   const auto frames = framesOf(command);
   if (frames)
     Video(command.output, command.fps);  // what it lacks is said before long work
@@ -241,50 +303,20 @@ void runRender(const RenderCommand& command) {
   Progress progress("render");
   progress.show("device");
   Renderer renderer(command.device);
-  progress.show("loading");
-  Plant plant = loadPlant(command.input, command.load);
-  std::optional<PlantTransfer> transfer;
-  if (view.terms.ambient_source == AmbientSource::kTransfer) {
-    transfer = loadTransfer(command.input, plant);
-    if (!transfer && command.light == "best")
-      view.terms.ambient_source = AmbientSource::kBaked;
-    else if (!transfer)
-      throw Error(command.input,
-                  fmt::format("has no transfer vectors ({} is not there)",
-                              transferPath(command.input).string()),
-                  "trace them with verdure bake --transfer 5");
+  std::optional<ShownPlant> shown;
+  Scene scene;
+  scene.ground = !command.no_ground;
+  if (!command.input.empty()) {
+    shown.emplace(command, view, progress);
+    scene = shown->scene(command);
+  } else if (command.light == "best") {
+    view.terms.ambient_source = AmbientSource::kBaked;
   }
-  // The file's own bake, or one made now; a light without baked terms needs neither.
-  std::optional<CrownLight> light;
-  if (!command.bake_again) light = lightOfFile(plant);
-  const bool visible_terms = view.terms.ambient_source == AmbientSource::kLeafVisibility;
-  const bool baked_terms = view.terms.normal == NormalSource::kCrown || visible_terms ||
-                           view.terms.ambient_source == AmbientSource::kBaked;
-  double bake_seconds = 0.0;
-  if (!light && baked_terms) {
-    progress.show("baking");
-    if (field == BakeField::kMetaball) {
-      DensityBake bake = bakeDensity(plant, bake_options);
-      light = std::move(bake.light);
-      bake_seconds = bake.report.seconds_total;
-    } else {
-      DepthBake bake = bakeOpticalDepth(plant, depth_options);
-      light = std::move(bake.light);
-      bake_seconds = bake.report.seconds_total;
-    }
-  }
-  if (visible_terms) bake_seconds += addLeafVisibility(plant, progress, *light);
-  if (view.terms.normal == NormalSource::kLeaf) restoreLeafNormals(plant);
-  Scene scene = command.sceneOf(plant, light ? &*light : nullptr);
-  if (transfer) scene.items[0].transfer = &*transfer;
-  std::optional<PlantMotion> motion;
-  std::vector<std::string> notes;  // how its branches were found
-  if (view.wind.speed > 0.0f) {
-    progress.show("motion");
-    motion = motionFor(plant);
-    for (const std::string& note : plant.notes)
-      if (note.starts_with("branches: ")) notes.push_back(note);
-    scene.items[0].motion = &*motion;
+  SceneGround ground;
+  if (command.ground.any()) {
+    progress.show("ground");
+    ground = makeGround(command.ground);
+    ground.layUnder(scene, command.ground);
   }
   view.camera =
       command.cameraFor(scene, static_cast<float>(view.width) / static_cast<float>(view.height));
@@ -298,16 +330,18 @@ void runRender(const RenderCommand& command) {
   if (!frames && view.hdr) writeExr(frame.hdr, command.output);
   if (!frames && !view.hdr) writePng(frame.image, command.output);
   progress.show("done");
-  const std::string light_name = command.light == "best"
-                                     ? (transfer ? "best (transfer vectors)" : "best (baked)")
-                                     : command.light;
+  const std::vector<std::string> notes = shown ? shown->notes : std::vector<std::string>();
+  const std::string light_name =
+      command.light == "best"
+          ? (shown && shown->transfer ? "best (transfer vectors)" : "best (baked)")
+          : command.light;
   if (command.json) {
     fmt::print("{}\n",
                nlohmann::ordered_json{{"device", renderer.deviceName()},
                                       {"light", light_name},
                                       {"width", view.width},
                                       {"height", view.height},
-                                      {"bake_seconds", bake_seconds},
+                                      {"bake_seconds", shown ? shown->bake_seconds : 0.0},
                                       {"pack_ms", frame.times.pack_ms},
                                       {"motion_ms", frame.times.motion_ms},
                                       {"shadow_ms", frame.times.shadow_ms},

@@ -52,13 +52,15 @@ vk::raii::Pipeline makeGraphicsPipeline(const Device& device, const GraphicsRequ
                                                       .depthWriteEnable = request.depth_write,
                                                       .depthCompareOp = request.depth_compare};
   using Component = vk::ColorComponentFlagBits;
+  const bool over = request.blend == Blend::kOver;
+  const vk::BlendFactor kept = over ? vk::BlendFactor::eOneMinusSrcAlpha : vk::BlendFactor::eOne;
   const vk::PipelineColorBlendAttachmentState attachment{
-      .blendEnable = request.blend == Blend::kMaxAndSum,
+      .blendEnable = over || request.blend == Blend::kMaxAndSum,
       .srcColorBlendFactor = vk::BlendFactor::eOne,
-      .dstColorBlendFactor = vk::BlendFactor::eOne,
-      .colorBlendOp = vk::BlendOp::eMax,
+      .dstColorBlendFactor = kept,
+      .colorBlendOp = over ? vk::BlendOp::eAdd : vk::BlendOp::eMax,
       .srcAlphaBlendFactor = vk::BlendFactor::eOne,
-      .dstAlphaBlendFactor = vk::BlendFactor::eOne,
+      .dstAlphaBlendFactor = kept,
       .alphaBlendOp = vk::BlendOp::eAdd,
       .colorWriteMask = request.blend == Blend::kNothing
                             ? vk::ColorComponentFlags{}

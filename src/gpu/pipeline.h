@@ -18,6 +18,7 @@ enum class Blend {
   kReplace,
   kNothing,    ///< is not written
   kMaxAndSum,  ///< the larger colour, the sum of the alphas
+  kOver,       ///< covers it by its alpha, which the colour has been multiplied with
 };
 
 /// What a graphics pipeline is made of; what is not listed is the same for all of verdure's

@@ -73,6 +73,7 @@ FrameDrawer::FrameDrawer(const gpu::Device& device)
       transfer_pass_(device),
       shadow_pass_(),
       blocker_pass_(device),
+      grass_pass_(device, *layout_.frame_set.layout),
       exposure_pass_(device),
       bloom_pass_(device),
       tone_pass_(device),
@@ -158,15 +159,15 @@ void FrameDrawer::checkView(const View& view) const {
          "make it a unit vector");
 }
 
-void FrameDrawer::resize(const View& view) {
-  if (!targets_ || !targets_->fits(view.width, view.height)) {
-    targets_.reset();
-    targets_.emplace(*device_, static_cast<std::uint32_t>(view.width),
-                     static_cast<std::uint32_t>(view.height));
-    exposure_pass_.setSource(targets_->resolved);
-    bloom_pass_.setSource(targets_->resolved);
-    tone_pass_.setSource(targets_->color, bloom_pass_.result(), exposure_pass_.result());
-  }
+bool FrameDrawer::resize(const View& view) {
+  if (targets_ && targets_->fits(view.width, view.height)) return false;
+  targets_.reset();
+  targets_.emplace(*device_, static_cast<std::uint32_t>(view.width),
+                   static_cast<std::uint32_t>(view.height));
+  exposure_pass_.setSource(targets_->resolved);
+  bloom_pass_.setSource(targets_->resolved);
+  tone_pass_.setSource(targets_->color, bloom_pass_.result(), exposure_pass_.result());
+  return true;
 }
 
 std::vector<Cascade> FrameDrawer::cascadesOf(const GpuScene& scene, const View& view) {
@@ -271,20 +272,40 @@ void FrameDrawer::recordColor(const vk::raii::CommandBuffer& commands, const Gpu
                     gpu::Use::kColorAttachment);
   gpu::imageBarrier(commands, *targets_->depth.image, kDepthAspect, gpu::Use::kUndefined,
                     gpu::Use::kDepthAttachment);
-  const vk::RenderingAttachmentInfo color{
+  const bool terrain = scene.terrain() != nullptr;
+  beginColor(commands, true, !terrain);
+  plant_pass_.record(commands, layout_, *frame_set_, scene, view.terms);
+  backdrop_pass_.record(commands, layout_, *frame_set_, view.terms, kind,
+                        scene.ground() && !terrain);
+  commands.endRendering();
+  if (!terrain) return;
+  grass_pass_.recordDepthRange(commands, targets_->depth);
+  gpu::imageBarrier(commands, *targets_->color.image, kColorAspect, gpu::Use::kColorAttachment,
+                    gpu::Use::kColorAttachment);
+  beginColor(commands, false, true);
+  grass_pass_.record(commands, *frame_set_, *scene.terrain(), view.terms, kind);
+  commands.endRendering();
+}
+
+void FrameDrawer::beginColor(const vk::raii::CommandBuffer& commands, bool first, bool last) const {
+  const vk::AttachmentLoadOp load =
+      first ? vk::AttachmentLoadOp::eClear : vk::AttachmentLoadOp::eLoad;
+  vk::RenderingAttachmentInfo color{
       .imageView = *targets_->color.view,
       .imageLayout = vk::ImageLayout::eColorAttachmentOptimal,
-      .resolveMode = vk::ResolveModeFlagBits::eAverage,
-      .resolveImageView = *targets_->resolved.view,
-      .resolveImageLayout = vk::ImageLayout::eColorAttachmentOptimal,
-      .loadOp = vk::AttachmentLoadOp::eClear,
+      .loadOp = load,
       .storeOp = vk::AttachmentStoreOp::eStore,  // the tone pass reads the samples
       .clearValue = vk::ClearValue(vk::ClearColorValue(std::array{0.0f, 0.0f, 0.0f, 0.0f}))};
+  if (last) {
+    color.resolveMode = vk::ResolveModeFlagBits::eAverage;
+    color.resolveImageView = *targets_->resolved.view;
+    color.resolveImageLayout = vk::ImageLayout::eColorAttachmentOptimal;
+  }
   const vk::RenderingAttachmentInfo depth{
       .imageView = *targets_->depth.view,
       .imageLayout = vk::ImageLayout::eDepthAttachmentOptimal,
-      .loadOp = vk::AttachmentLoadOp::eClear,
-      .storeOp = vk::AttachmentStoreOp::eDontCare,
+      .loadOp = load,
+      .storeOp = last ? vk::AttachmentStoreOp::eDontCare : vk::AttachmentStoreOp::eStore,
       .clearValue = vk::ClearValue(vk::ClearDepthStencilValue{.depth = 0.0f})};
   const vk::Rect2D area{.extent = {targets_->color.request.width, targets_->color.request.height}};
   commands.beginRendering({.renderArea = area,
@@ -296,9 +317,6 @@ void FrameDrawer::recordColor(const vk::raii::CommandBuffer& commands, const Gpu
                                        .height = static_cast<float>(area.extent.height),
                                        .maxDepth = 1.0f});
   commands.setScissor(0, area);
-  plant_pass_.record(commands, layout_, *frame_set_, scene, view.terms);
-  backdrop_pass_.record(commands, layout_, *frame_set_, view.terms, kind, scene.ground());
-  commands.endRendering();
 }
 
 void FrameDrawer::recordTone(const vk::raii::CommandBuffer& commands, const View& view,
@@ -323,7 +341,7 @@ void FrameDrawer::recordTone(const vk::raii::CommandBuffer& commands, const View
 
 Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
   checkView(view);
-  resize(view);
+  const bool new_targets = resize(view);
   scene.setWind(view.wind, view.last ? std::optional(view.last->wind) : std::nullopt);
   const FrameLight light = makeFrameLight(view, skyOf(view), scene.ground());
   sky_image_.look(view.daylight.sky);
@@ -344,6 +362,9 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
   if (depth_maps) light_depth_pass_.prepare(*device_, layout_, scene, view.terms);
   plant_pass_.prepare(*device_, layout_, scene, view.terms);
   backdrop_pass_.prepare(*device_, layout_, view.terms, kind, scene.ground());
+  if (scene.terrain() != nullptr)
+    grass_pass_.prepare(*scene.terrain(), view, targets_->depth, new_targets, kind,
+                        uniforms.ground.y);
 
   device_->submit([&](const vk::raii::CommandBuffer& commands) {
     timers_.reset(commands);

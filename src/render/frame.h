@@ -11,6 +11,7 @@
 #include "render/exposure_pass.h"
 #include "render/frame_layout.h"
 #include "render/frame_light.h"
+#include "render/grass_pass.h"
 #include "render/ground_light.h"
 #include "render/light_depth_pass.h"
 #include "render/motion_pass.h"
@@ -30,6 +31,7 @@ class FrameDrawer {
   explicit FrameDrawer(const gpu::Device& device);
   const FrameLayout& layout() const { return layout_; }
   const MotionLayouts& motionLayouts() const { return motion_pass_.layouts(); }
+  const gpu::SetLayout& grassLayout() const { return grass_pass_.setLayout(); }
   const gpu::SetLayout& transferLayout() const { return transfer_pass_.setLayout(); }
   /// The next frame shows another scene.
   void forgetScene() { ++scene_id_; }
@@ -46,7 +48,7 @@ class FrameDrawer {
 
  private:
   void checkView(const View& view) const;
-  void resize(const View& view);
+  bool resize(const View& view);  ///< whether the targets are new
   std::vector<Cascade> cascadesOf(const GpuScene& scene, const View& view);
   const Harmonics& skyOf(const View& view);
   shared::FrameUniforms makeUniforms(const GpuScene& scene, const View& view,
@@ -54,6 +56,9 @@ class FrameDrawer {
                                      const std::vector<Cascade>& cascades) const;
   void recordColor(const vk::raii::CommandBuffer& commands, const GpuScene& scene, const View& view,
                    const DrawKind& kind) const;
+  /// Begins rendering to the samples: onto what is there unless `first`; `last`: with their
+  /// average.
+  void beginColor(const vk::raii::CommandBuffer& commands, bool first, bool last) const;
   void recordTone(const vk::raii::CommandBuffer& commands, const View& view, float units) const;
 
   const gpu::Device* device_;
@@ -66,6 +71,7 @@ class FrameDrawer {
   PlantPass plant_pass_;
   VelocityPass velocity_pass_;
   BackdropPass backdrop_pass_;
+  GrassPass grass_pass_;
   ExposurePass exposure_pass_;
   BloomPass bloom_pass_;
   TonePass tone_pass_;

@@ -6,7 +6,7 @@ namespace verdure {
 
 GpuScene::GpuScene(const gpu::Device& device, const PackedScene& packed,
                    vk::DescriptorSetLayout material_layout, const gpu::SetLayout& transfer_layout,
-                   const MotionLayouts& motion_layouts)
+                   const MotionLayouts& motion_layouts, const gpu::SetLayout& grass_layout)
     : has_crown_normals_(!packed.crown_normals.empty()),
       moving_items_(packed.motions.items),
       places_(packed.instances),
@@ -43,6 +43,7 @@ GpuScene::GpuScene(const gpu::Device& device, const PackedScene& packed,
     leaf_arrays_.push_back(upload.textureArray(
         leaf.layers, leaf.linear ? vk::Format::eR8G8B8A8Unorm : vk::Format::eR8G8B8A8Srgb));
   upload.finish();
+  if (packed.terrain) terrain_.emplace(device, *packed.terrain, grass_layout);
 
   for (int clamp = 0; clamp < 4; ++clamp) {
     const auto mode = [](bool edge) {

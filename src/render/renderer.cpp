@@ -106,7 +106,8 @@ void Renderer::setScene(const Scene& scene) {
     state_->scene.reset();
     state_->frames.forgetScene();
     state_->scene.emplace(state_->device, packed, *state_->frames.layout().material_set,
-                          state_->frames.transferLayout(), state_->frames.motionLayouts());
+                          state_->frames.transferLayout(), state_->frames.motionLayouts(),
+                          state_->frames.grassLayout());
   });
   state_->pack_ms = timer.seconds() * 1e3;
 }

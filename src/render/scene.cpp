@@ -364,6 +364,22 @@ class Packer {
   std::map<std::array<const Image*, 3>, std::uint32_t> known_leaves_;
 };
 
+/// The scene's terrain, or its plane, with the grass on it.
+PackedTerrain packTerrain(const Scene& scene) {
+  PackedTerrain packed;
+  if (scene.terrain != nullptr) {
+    packed.terrain = *scene.terrain;
+    checkTerrain(packed.terrain, "terrain");
+  } else {
+    if (!scene.ground)
+      throw Error("scene", "has grass, but no ground for it to stand on", "set Scene::ground");
+    packed.terrain = {2, 2, glm::vec2(-8.0f), glm::vec2(16.0f),
+                      std::vector<float>(4, scene.ground_height)};
+  }
+  for (const GrassLayer& layer : scene.grass) packed.layers.push_back(packGrass(layer));
+  return packed;
+}
+
 }  // namespace
 
 PackedNormal packNormal(const glm::vec3& unit_normal, float ambient, const glm::vec2& visibility) {
@@ -390,7 +406,9 @@ void growBounds(const Bounds& box, const PackedInstance& place, Bounds& all) {
 PackedScene packScene(const Scene& scene) {
   for (const SceneItem& item : scene.items)
     if (item.plant == nullptr) throw Error("scene", "an item has no plant", "set SceneItem::plant");
-  return Packer(scene).pack();
+  PackedScene packed = Packer(scene).pack();
+  if (scene.terrain != nullptr || !scene.grass.empty()) packed.terrain = packTerrain(scene);
+  return packed;
 }
 
 }  // namespace verdure

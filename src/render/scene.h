@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gpu/resources.h"
+#include "render/grass_pass.h"
 #include "render/mipmaps.h"
 #include "render/motion_pass.h"
 #include "render/packed_motion.h"
@@ -107,7 +108,8 @@ struct PackedScene {
   Bounds bounds;  ///< of all instances, at rest
   bool ground = false;
   float ground_height = 0.0f;
-  glm::vec3 leaf_tint{1.0f};  ///< leafTint() of all foliage, mean over its vertices
+  glm::vec3 leaf_tint{1.0f};             ///< leafTint() of all foliage, mean over its vertices
+  std::optional<PackedTerrain> terrain;  ///< instead of the plane of the ground
 };
 
 /// Extends `all` by what is in the box of a plant at this place.
@@ -123,7 +125,7 @@ class GpuScene {
  public:
   GpuScene(const gpu::Device& device, const PackedScene& packed,
            vk::DescriptorSetLayout material_layout, const gpu::SetLayout& transfer_layout,
-           const MotionLayouts& motion_layouts);
+           const MotionLayouts& motion_layouts, const gpu::SetLayout& grass_layout);
 
   /// Binds all vertex streams and the index buffer; the normals are those asked for.
   void bindVertices(const vk::raii::CommandBuffer& commands, NormalSource normals) const;
@@ -143,6 +145,9 @@ class GpuScene {
   const glm::vec3& leafTint() const { return leaf_tint_; }
   const std::vector<PackedGround>& grounds() const { return grounds_; }
   GpuTransfer& transfer() { return *transfer_; }
+  /// What is drawn instead of the plane of the ground, or null.
+  GpuTerrain* terrain() { return terrain_ ? &*terrain_ : nullptr; }
+  const GpuTerrain* terrain() const { return terrain_ ? &*terrain_ : nullptr; }
 
   /// Vertex bindings 0..4 and attributes: position, normal, uv, the instance (rows, motion), light
   /// from transfer vectors (front, back). Without `transfer` every vertex reads the first one's
@@ -168,6 +173,7 @@ class GpuScene {
   std::vector<PackedGround> grounds_;
   Bounds rest_bounds_, bounds_;
   std::optional<Wind> bounds_wind_;  ///< that bounds_ are for; unset: at rest
+  std::optional<GpuTerrain> terrain_;
   bool ground_ = false;
   float ground_height_ = 0.0f;
   glm::vec3 leaf_tint_{1.0f};

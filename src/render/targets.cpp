@@ -41,7 +41,7 @@ Targets::Targets(const gpu::Device& device, std::uint32_t width, std::uint32_t h
     : color(makeTarget(device, width, height, FrameLayout::kColor, FrameLayout::kSamples,
                        Usage::eColorAttachment | Usage::eSampled)),
       depth(makeTarget(device, width, height, FrameLayout::kDepth, FrameLayout::kSamples,
-                       Usage::eDepthStencilAttachment)),
+                       Usage::eDepthStencilAttachment | Usage::eSampled)),
       resolved(makeTarget(device, width, height, FrameLayout::kColor, vk::SampleCountFlagBits::e1,
                           Usage::eColorAttachment | Usage::eSampled | Usage::eTransferSrc)),
       picture(makeTarget(device, width, height, TonePass::kFormat, vk::SampleCountFlagBits::e1,

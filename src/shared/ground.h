@@ -26,13 +26,18 @@ SHARED_FUNCTION GroundLookup groundLookup(vec2 p, float tile) {
   return at;
 }
 
+/// Patches, lighter, darker and drier, by noise in [0, 1] at three sizes: brightness goes from 1 -
+/// spread to 1 + spread.
+SHARED_FUNCTION vec3 groundTone(float fine, float middle, float broad, float spread) {
+  float tone = 0.5f * fine + 0.3f * middle + 0.2f * broad;
+  vec3 dry = vec3(1.2f, 1.03f, 0.95f);
+  return mix(1.0f - spread, 1.0f + spread, tone) * mix(vec3(1.0f), dry, middle * broad);
+}
+
 /// Reflectance, linear RGB, of what was found there.
 SHARED_FUNCTION vec3 groundColor(vec3 blades, vec3 turned_blades, float fine, float middle,
                                  float broad) {
-  float tone = 0.5f * fine + 0.3f * middle + 0.2f * broad;
-  vec3 dry = vec3(1.2f, 1.03f, 0.95f);
-  return mix(blades, turned_blades, 0.35f) * mix(0.55f, 1.45f, tone) *
-         mix(vec3(1.0f), dry, middle * broad);
+  return mix(blades, turned_blades, 0.35f) * groundTone(fine, middle, broad, 0.45f);
 }
 
 SHARED_END

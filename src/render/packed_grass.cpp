@@ -1,0 +1,156 @@
+#include "render/packed_grass.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "base/parallel.h"
+#include "shared/color.h"
+#include "verdure/error.h"
+
+namespace verdure {
+namespace {
+
+/// What a map becomes: colours are sRGB, premultiplied.
+struct PackedMips {
+  std::vector<gpu::MipLevel> colors, data;
+};
+PackedMips packMips(const GrassMap& map) {
+  PackedMips packed;
+  for (const GrassMap& mip : grassMips(map)) {
+    gpu::MipLevel colors{static_cast<std::uint32_t>(mip.width),
+                         static_cast<std::uint32_t>(mip.height),
+                         std::vector<std::uint8_t>(mip.texelCount() * 4)};
+    gpu::MipLevel data = colors;
+    parallelFor(mip.texelCount(), 1 << 14, [&](std::size_t i) {
+      const glm::vec4& color = mip.color[i];
+      for (int c = 0; c < 3; ++c)
+        colors.rgba[i * 4 + static_cast<std::size_t>(c)] = toByte(shared::srgbFromLinear(color[c]));
+      colors.rgba[i * 4 + 3] = toByte(color.a);
+      const auto bytes = packGrassData(mip.data[i]);
+      std::copy(bytes.begin(), bytes.end(), data.rgba.begin() + static_cast<std::ptrdiff_t>(i * 4));
+    });
+    packed.colors.push_back(std::move(colors));
+    packed.data.push_back(std::move(data));
+  }
+  return packed;
+}
+
+void addLayer(const GrassMap& map, std::vector<std::vector<gpu::MipLevel>>& colors,
+              std::vector<std::vector<gpu::MipLevel>>& data) {
+  PackedMips packed = packMips(map);
+  colors.push_back(std::move(packed.colors));
+  data.push_back(std::move(packed.data));
+}
+
+/// GrassUniforms::canopy: what slices that are crossed at random leave open above even heights.
+void setCanopy(const GrassSet& set, shared::GrassUniforms& u) {
+  const int rows = set.slices[0].height;
+  std::vector<double> alpha(static_cast<std::size_t>(rows), 0.0);
+  for (const GrassMap& slice : set.slices)
+    for (std::size_t i = 0; i < slice.texelCount(); ++i)
+      alpha[i / static_cast<std::size_t>(slice.width)] += double{slice.color[i].a};
+  const double texels = static_cast<double>(set.slices.size()) * set.slices[0].width;
+  const auto rowAt = [&](double share) {  // of the height, from below
+    const double row = std::clamp((1.0 - share) * rows - 0.5, 0.0, rows - 1.0);
+    const auto low = static_cast<std::size_t>(row);
+    const std::size_t high = std::min(low + 1, alpha.size() - 1);
+    return std::min(std::lerp(alpha[low], alpha[high], row - static_cast<double>(low)) / texels,
+                    0.98);
+  };
+  constexpr int kPerStep = 16;
+  double depth = 0.0;
+  for (int step = shared::kCanopySteps; step >= 0; --step) {
+    double open = 0.0, sum = 0.0;
+    for (int e = 0; e < 16; ++e)
+      for (int a = 0; a < 16; ++a) {
+        const double elevation = (e + 0.5) / 16.0 * glm::half_pi<double>();
+        const double azimuth = (a + 0.5) / 16.0 * glm::half_pi<double>();
+        const double weight = std::sin(elevation) * std::cos(elevation);
+        const glm::dvec2 aside =
+            glm::dvec2(std::cos(azimuth), std::sin(azimuth)) / std::tan(elevation);
+        open += weight * std::exp(-depth * (aside.x / double{set.spacing_m.x} +
+                                            aside.y / double{set.spacing_m.y}));
+        sum += weight;
+      }
+    u.canopy[step] = glm::vec4(depth, open / sum, 0.0, 0.0);
+    for (int k = 0; k < kPerStep && step > 0; ++k) {
+      const double share = (step - (k + 0.5) / kPerStep) / shared::kCanopySteps;
+      depth -=
+          std::log(1.0 - rowAt(share)) * double{set.height_m} / (shared::kCanopySteps * kPerStep);
+    }
+  }
+  // The inverse of the depth.
+  for (int i = 0; i <= shared::kCanopySteps; ++i) {
+    const float wanted = u.canopy[0].x * static_cast<float>(i) / shared::kCanopySteps;
+    int step = shared::kCanopySteps;  // the highest whose lower neighbour is as deep
+    while (step > 1 && u.canopy[step - 1].x < wanted) --step;
+    const float low = u.canopy[step].x, high = u.canopy[step - 1].x;
+    const float share = high > low ? std::clamp((wanted - low) / (high - low), 0.0f, 1.0f) : 0.0f;
+    u.canopy[i].z = (static_cast<float>(step) - share) / shared::kCanopySteps;
+  }
+}
+
+void setMean(const GrassSet& set, shared::GrassUniforms& u) {
+  glm::dvec4 color(0.0);
+  double through = 0.0;
+  for (const GrassMap& slice : set.slices)
+    for (std::size_t i = 0; i < slice.texelCount(); ++i) {
+      color += glm::dvec4(slice.color[i]);
+      through += double{slice.data[i].z};
+    }
+  const double covered = std::max(color.a, 1e-9);
+  u.mean = glm::vec4(glm::vec3(color) / static_cast<float>(covered), through / covered);
+}
+
+}  // namespace
+
+std::array<std::uint8_t, 4> packGrassData(const glm::vec4& data) {
+  const auto sign = [](float value) {
+    return static_cast<std::uint8_t>(std::lround(std::clamp(value, -1.0f, 1.0f) * 127.0f) + 128);
+  };
+  return {sign(data.x), sign(data.y), toByte(data.z), toByte(data.w)};
+}
+
+PackedGrass packGrass(const GrassLayer& layer) {
+  if (layer.set == nullptr) throw Error("grass", "a layer has no set", "set GrassLayer::set");
+  const GrassSet& set = *layer.set;
+  checkGrassSet(set, set.name);
+  const auto demand = [](bool good, const char* what, const char* range) {
+    if (!good) throw Error("grass", std::string(what) + " is out of range", range);
+  };
+  demand(layer.density >= 0.0f && layer.density <= 1.0f, "density", "choose 0 to 1");
+  demand(std::isfinite(layer.turn), "turn", "give a finite angle");
+  demand(layer.most_slices >= 1 && layer.most_slices <= 256, "most_slices", "choose 1 to 256");
+  demand(layer.scatter >= 0.0f && layer.scatter <= 0.9f, "scatter", "choose 0 to 0.9");
+  demand(layer.variation >= 0.0f && layer.variation <= 1.0f, "variation", "choose 0 to 1");
+  if (layer.cover != nullptr) checkCoverMap(*layer.cover, "cover of " + set.name);
+
+  PackedGrass packed;
+  for (const GrassMap& slice : set.slices) addLayer(slice, packed.slice_colors, packed.slice_data);
+  addLayer(set.opaque, packed.slice_colors, packed.slice_data);
+  addLayer(set.ground, packed.ground_colors, packed.ground_data);
+  if (!set.middle.empty()) addLayer(set.middle, packed.ground_colors, packed.ground_data);
+  packed.cover = layer.cover != nullptr ? *layer.cover
+                                        : CoverMap{1, 1, glm::vec2(0.0f), glm::vec2(1.0f), {1.0f}};
+  packed.ends_at_depth = layer.ends_at_depth;
+  packed.medium = layer.medium;
+  shared::GrassUniforms& u = packed.uniforms;
+  u.shell = glm::vec4(set.height_m, set.spacing_m, set.tile_m);
+  const bool middle = layer.middle && !set.middle.empty();
+  u.limits = glm::vec4(layer.most_slices, 0.49f, middle, set.slices.size());
+  const GrassMap& slice = set.slices[0];
+  u.texels = glm::vec4(static_cast<float>(slice.width) / (4.0f * set.tile_m),
+                       static_cast<float>(slice.height) / set.height_m,
+                       static_cast<float>(set.ground.width) / (4.0f * set.tile_m), 0.0f);
+  const float c = std::cos(layer.turn), s = std::sin(layer.turn);
+  u.rows = layer.mirrored ? glm::vec4(c, s, s, -c) : glm::vec4(c, s, -s, c);
+  u.cover_size = glm::vec4(packed.cover.width, packed.cover.height, layer.density, layer.variation);
+  u.placing = glm::vec4(layer.scatter, 0.0f, 0.0f, 0.0f);
+  u.soil = glm::vec4(set.species.soil_color, 0.0f);
+  setCanopy(set, u);
+  setMean(set, u);
+  return packed;
+}
+
+}  // namespace verdure

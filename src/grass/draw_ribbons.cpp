@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "base/parallel.h"
 
@@ -30,7 +31,11 @@ struct Sample {
   float transmitted, rank;
 };
 
-using Strip = std::array<Corner, static_cast<std::size_t>(2 * kRibbonStations)>;
+/// A ribbon as it is drawn, left and right corners in turn.
+struct Strip {
+  std::array<Corner, static_cast<std::size_t>(2 * kRibbonStations)> corners;
+  std::size_t count = 0;
+};
 
 /// The samples of a block; those at depth kNothing show nothing.
 struct Samples {
@@ -78,9 +83,12 @@ class Picture {
 
   Strip stripOf(const DrawnRibbon& drawn) const {
     Strip strip;
-    for (int k = 0; k < kRibbonStations; ++k) {
+    const shared::GrassRibbon& r = drawn.ribbon;
+    // Every second station is enough for what is short in the picture or nearly straight.
+    const bool coarse = r.profile != shared::kRibbonOval &&
+                        (std::abs(r.bend) < 0.2f || r.span * per_m_.x < 20.0f * kSamples);
+    for (int k = 0; k < kRibbonStations; k += coarse ? 2 : 1) {
       const float s = static_cast<float>(k) / (kRibbonStations - 1);
-      const shared::GrassRibbon& r = drawn.ribbon;
       const glm::vec3 middle = shared::ribbonPoint(r, s);
       const glm::vec3 half = 0.5f * shared::ribbonWidth(r.profile, r.width, s) *
                              shared::ribbonAcross(r, s, view_.toward);
@@ -90,12 +98,11 @@ class Picture {
         const glm::vec3 p = middle + t * half;
         const glm::vec2 at = place(p);
         const glm::vec3 n = shared::ribbonNormal(r, s, t, view_.toward);
-        strip[static_cast<std::size_t>(2 * k + side)] = {
-            at.x,
-            at.y,
-            glm::dot(p, view_.toward),
-            color,
-            {glm::dot(n, view_.right), glm::dot(n, view_.up)}};
+        strip.corners[strip.count++] = {at.x,
+                                        at.y,
+                                        glm::dot(p, view_.toward),
+                                        color,
+                                        {glm::dot(n, view_.right), glm::dot(n, view_.up)}};
       }
     }
     return strip;
@@ -103,23 +110,28 @@ class Picture {
 
   void sortIntoBlocks() {
     std::vector<Box> boxes(ribbons_.size());
+    std::vector<std::pair<float, std::uint32_t>> order(ribbons_.size());
     strips_.resize(ribbons_.size());
     parallelFor(ribbons_.size(), 256, [&](std::size_t i) {
       strips_[i] = stripOf(ribbons_[i]);
       Box& box = boxes[i];
       float low = 1e30f, high = -1e30f;
-      for (const Corner& c : strips_[i]) {
+      for (std::size_t k = 0; k < strips_[i].count; ++k) {
+        const Corner& c = strips_[i].corners[k];
         box = {std::min(box.x0, c.x), std::max(box.x1, c.x), std::min(box.y0, c.y),
                std::max(box.y1, c.y)};
         low = std::min(low, c.depth);
         high = std::max(high, c.depth);
       }
       if (high < view_.from_m || low >= view_.to_m) box = Box{};
+      order[i] = {-high, static_cast<std::uint32_t>(i)};
     });
+    // What is behind is then seldom drawn only to be drawn over.
+    std::sort(order.begin(), order.end());
     const auto width = static_cast<float>(view_.width * kSamples);
     const auto height = static_cast<float>(view_.height * kSamples);
     const int down = view_.repeats_down ? 1 : 0;
-    for (std::size_t i = 0; i < boxes.size(); ++i)
+    for (const auto& [nearness, i] : order)
       for (int sy = -down; sy <= down; ++sy)
         for (int sx = -1; sx <= 1; ++sx) {
           const float dx = static_cast<float>(sx) * width, dy = static_cast<float>(sy) * height;
@@ -131,8 +143,7 @@ class Picture {
           for (int y = blockOf(b.y0, rows_); y <= blockOf(b.y1, rows_); ++y)
             for (int x = blockOf(b.x0, columns_); x <= blockOf(b.x1, columns_); ++x)
               blocks_[static_cast<std::size_t>(y * columns_ + x)].push_back(
-                  {static_cast<std::uint32_t>(i), static_cast<std::int8_t>(sx),
-                   static_cast<std::int8_t>(sy)});
+                  {i, static_cast<std::int8_t>(sx), static_cast<std::int8_t>(sy)});
         }
   }
 
@@ -147,13 +158,14 @@ class Picture {
     for (const Entry& entry : blocks_[block]) {
       const DrawnRibbon& drawn = ribbons_[entry.ribbon];
       Strip strip = strips_[entry.ribbon];
-      for (Corner& c : strip) {
-        c.x += static_cast<float>((entry.shift_x * view_.width - left) * kSamples);
-        c.y += static_cast<float>((entry.shift_y * view_.height - top) * kSamples);
+      auto& corners = strip.corners;
+      for (std::size_t k = 0; k < strip.count; ++k) {
+        corners[k].x += static_cast<float>((entry.shift_x * view_.width - left) * kSamples);
+        corners[k].y += static_cast<float>((entry.shift_y * view_.height - top) * kSamples);
       }
-      for (std::size_t k = 0; k + 2 < strip.size(); k += 2) {
-        drawTriangle(strip[k], strip[k + 1], strip[k + 3], drawn, samples);
-        drawTriangle(strip[k], strip[k + 3], strip[k + 2], drawn, samples);
+      for (std::size_t k = 0; k + 2 < strip.count; k += 2) {
+        drawTriangle(corners[k], corners[k + 1], corners[k + 3], drawn, samples);
+        drawTriangle(corners[k], corners[k + 3], corners[k + 2], drawn, samples);
       }
     }
     average(samples, left, top, map);
@@ -179,26 +191,34 @@ class Picture {
     const float step_b = (c.y - a.y) * scale, step_c = (a.y - b.y) * scale;
     const float step_a = -step_b - step_c;
     const float per_a = 1.0f / step_a, per_b = 1.0f / step_b, per_c = 1.0f / step_c;
+    const float down_b = (a.x - c.x) * scale, down_c = (b.x - a.x) * scale;
+    const float px = static_cast<float>(x0) + 0.5f - a.x;
+    const float first_b = px * step_b, first_c = px * step_c;
     for (int y = y0; y <= y1; ++y) {
       const float py = static_cast<float>(y) + 0.5f - a.y;
-      const float px = static_cast<float>(x0) + 0.5f - a.x;
-      const float row_b = (px * (c.y - a.y) - py * (c.x - a.x)) * scale;
-      const float row_c = ((b.x - a.x) * py - (b.y - a.y) * px) * scale;
-      // Where all three shares are positive, and one sample more at both ends.
+      const float row_b = first_b + py * down_b, row_c = first_c + py * down_c;
+      // Where all three shares are positive, and a little more, so that no gaps are left.
       float from = 0.0f, to = static_cast<float>(x1 - x0);
       const auto cut = [&](float row_share, float step, float per_step) {
-        if (step > 0.0f) from = std::max(from, -row_share * per_step - 1.0f);
-        if (step < 0.0f) to = std::min(to, -row_share * per_step + 1.0f);
+        if (step > 0.0f)
+          from = std::max(from, -row_share * per_step);
+        else if (step < 0.0f)
+          to = std::min(to, -row_share * per_step);
+        else if (row_share < 0.0f)
+          to = -1.0f;
       };
       cut(1.0f - row_b - row_c, step_a, per_a);
       cut(row_b, step_b, per_b);
       cut(row_c, step_c, per_c);
       if (!(from <= to)) continue;
-      for (int x = x0 + static_cast<int>(from); x <= x0 + static_cast<int>(to); ++x) {
+      const int first_x = x0 + static_cast<int>(from + 0.999f);
+      const int last_x = std::min(x1, x0 + static_cast<int>(to + 0.001f));
+      for (int x = first_x; x <= last_x; ++x) {
         const auto along = static_cast<float>(x - x0);
-        const float share_b = row_b + along * step_b, share_c = row_c + along * step_c;
+        // What lies in the slack of a sliver would be far outside of its corners.
+        const float share_b = std::clamp(row_b + along * step_b, 0.0f, 1.0f);
+        const float share_c = std::clamp(row_c + along * step_c, 0.0f, 1.0f - share_b);
         const float share_a = 1.0f - share_b - share_c;
-        if (share_a < 0 || share_b < 0 || share_c < 0) continue;
         const float depth = share_a * a.depth + share_b * b.depth + share_c * c.depth;
         const auto at = static_cast<std::size_t>(y * kBlockSamples + x);
         if (depth <= samples.depths[at] || depth < view_.from_m || depth >= view_.to_m) continue;

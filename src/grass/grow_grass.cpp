@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -20,9 +21,9 @@ constexpr float kPi = std::numbers::pi_v<float>;
 /// Dead blades that lie on the soil and cover the species' share of it.
 GrassPlant litterOf(const GrassSpecies& species) {
   GrassPart blade;
-  blade.length_m = std::min(0.05f, 0.2f * species.tile_m);
+  blade.length_m = std::min(0.06f, 0.2f * species.tile_m);
   blade.length_spread = 0.5f;
-  blade.width_m = 0.003f;
+  blade.width_m = 0.004f;
   blade.lean = 0.5f * kPi;
   blade.lean_spread = 0.0f;
   blade.bend = blade.bend_spread = 0.0f;

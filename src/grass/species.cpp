@@ -60,36 +60,38 @@ constexpr auto kCut = RibbonProfile::kCut;
 const glm::vec3 kGreen{0.048f, 0.105f, 0.024f};
 const glm::vec3 kDeepGreen{0.034f, 0.080f, 0.020f};
 const glm::vec3 kFreshGreen{0.070f, 0.140f, 0.030f};
-const glm::vec3 kPaleFoot{0.090f, 0.110f, 0.045f};
+const glm::vec3 kPaleFoot{0.065f, 0.085f, 0.036f};
 const glm::vec3 kStraw{0.270f, 0.215f, 0.115f};
 const glm::vec3 kOldStraw{0.180f, 0.135f, 0.075f};
+const glm::vec3 kLitter{0.105f, 0.085f, 0.050f};
 const glm::vec3 kPetalWhite{0.620f, 0.620f, 0.600f};
 
 GrassSpecies lawn() {
   GrassSpecies s;
   s.name = "lawn";
-  s.description = "mown lawn, 4.5 cm: 20 000 blades a square metre with cut tips";
+  s.description = "mown lawn, 4.5 cm: 32 000 blades a square metre, most with cut tips";
   s.height_m = 0.055f;
   s.spacing_m = 0.02f;
   s.tile_m = 0.5f;
-  s.litter = 0.4f;
+  s.litter = 0.25f;
+  s.litter_color = kLitter;
   s.plants = {
-      plant("ryegrass", 3600, 0.008f,
-            {Part(kCut, 4)
-                 .size(0.044f, 0.10f, 0.0026f)
-                 .leans(0.16f, 0.16f)
-                 .bends(0.25f, 0.25f)
-                 .looks(kPaleFoot, kGreen, 0.25f, 0.8f),
-             Part(kBlade, 1)
-                 .size(0.030f, 0.30f, 0.0024f)
-                 .leans(0.35f, 0.30f)
-                 .bends(0.60f, 0.40f)
-                 .looks(kGreen, kFreshGreen, 0.25f, 0.8f)}),
-      plant("fescue", 1400, 0.006f,
+      plant("ryegrass", 5200, 0.008f,
             {Part(kCut, 3)
-                 .size(0.042f, 0.12f, 0.0013f)
-                 .leans(0.14f, 0.14f)
-                 .bends(0.20f, 0.20f)
+                 .size(0.047f, 0.11f, 0.0026f)
+                 .leans(0.25f, 0.25f)
+                 .bends(0.45f, 0.40f)
+                 .looks(kPaleFoot, kGreen, 0.25f, 0.8f),
+             Part(kBlade, 2)
+                 .size(0.034f, 0.30f, 0.0028f)
+                 .leans(0.75f, 0.45f)
+                 .bends(0.70f, 0.40f)
+                 .looks(kGreen, kFreshGreen, 0.25f, 0.8f)}),
+      plant("fescue", 2200, 0.006f,
+            {Part(kCut, 3)
+                 .size(0.045f, 0.14f, 0.0014f)
+                 .leans(0.22f, 0.22f)
+                 .bends(0.40f, 0.35f)
                  .looks(kPaleFoot, kDeepGreen, 0.25f, 0.7f)}),
       plant("dead blades", 900, 0.005f,
             {Part(kBlade, 1)
@@ -108,18 +110,19 @@ GrassSpecies meadow() {
   s.height_m = 0.50f;
   s.spacing_m = 0.08f;
   s.tile_m = 0.8f;
-  s.litter = 0.5f;
+  s.litter = 0.4f;
+  s.litter_color = kLitter;
   const glm::vec3 stalk{0.085f, 0.125f, 0.045f};
   const glm::vec3 panicle{0.200f, 0.150f, 0.105f};
   const glm::vec3 yellow{0.600f, 0.420f, 0.020f};
   s.plants = {
       plant("red fescue", 420, 0.015f,
             {Part(kBlade, 10)
-                 .size(0.28f, 0.40f, 0.0022f)
+                 .size(0.30f, 0.38f, 0.0022f)
                  .leans(0.18f, 0.17f)
                  .bends(0.65f, 0.50f)
                  .looks(kPaleFoot, kGreen, 0.25f, 0.8f)}),
-      plant("cocksfoot", 190, 0.020f,
+      plant("cocksfoot", 250, 0.020f,
             {Part(kBlade, 6)
                  .size(0.34f, 0.30f, 0.0050f)
                  .leans(0.18f, 0.15f)
@@ -213,9 +216,9 @@ GrassSpecies meadow() {
                  .leans(0.12f, 0.12f)
                  .bends(0.25f, 0.20f)
                  .looks(kDeepGreen, kGreen, 0.20f, 0.4f),
-             Part(kOval, 36)
+             Part(kOval, 60)
                  .onStalk()
-                 .size(0.014f, 0.20f, 0.0032f)
+                 .size(0.014f, 0.15f, 0.0034f)
                  .leans(0.85f, 0.85f)
                  .bends(-0.20f, 0.20f)
                  .looks(glm::vec3(0.300f, 0.110f, 0.210f), glm::vec3(0.330f, 0.070f, 0.220f), 0.15f,
@@ -309,7 +312,8 @@ GrassSpecies clover() {
   s.height_m = 0.17f;
   s.spacing_m = 0.04f;
   s.tile_m = 0.5f;
-  s.litter = 0.3f;
+  s.litter = 0.25f;
+  s.litter_color = kLitter;
   const glm::vec3 leaf{0.036f, 0.090f, 0.022f};
   const glm::vec3 mark{0.062f, 0.120f, 0.048f};
   s.plants = {

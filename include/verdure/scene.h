@@ -42,7 +42,7 @@ struct GrassLayer {
   float density = 1.0f;             ///< times that, [0, 1]
   float turn = 0.5f;                ///< of u and v against x and z, about the vertical, radians
   bool mirrored = false;            ///< v runs against z
-  int most_slices = 16;             ///< on a ray, [1, 256]; what is open behind them is filled
+  int most_slices = 32;             ///< on a ray, [1, 256]; what is open behind them is filled
   float scatter = 0.6f;  ///< how far slices are off even distances, in shares of them, [0, 0.9]
   bool middle = true;    ///< the level slice, where the set has one
   /// Rays end at what stands in the grass; else it is hidden by whole pixels, where they are more

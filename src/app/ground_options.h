@@ -18,7 +18,7 @@ struct GroundOptions {
   std::vector<float> density;      ///< of each layer, the last for all further ones
   std::vector<std::string> cover;  ///< pictures, of each layer; "" or missing: everywhere
   std::uint64_t grass_seed = 1;
-  int slices = 16;      ///< on a ray
+  int slices = 32;      ///< on a ray
   std::string terrain;  ///< "hills" or a picture; empty: a plane
   std::string terrain_size = "200x200";
   std::string terrain_height = "0,12";

@@ -70,7 +70,8 @@ GpuTerrain::GpuTerrain(const gpu::Device& device, PackedTerrain packed,
   const bool bare = packed.layers.empty();
   if (bare) {
     PackedGrass& none = packed.layers.emplace_back();
-    none.slice_colors = none.slice_data = none.ground_colors = none.ground_data = plainLayers();
+    none.slice_colors = none.slice_data = none.ground_colors = none.ground_data = none.far_colors =
+        plainLayers();
     none.cover = CoverMap{1, 1, glm::vec2(0.0f), glm::vec2(1.0f), {1.0f}};
   }
   for (PackedGrass& source : packed.layers) {
@@ -81,14 +82,14 @@ GpuTerrain::GpuTerrain(const gpu::Device& device, PackedTerrain packed,
     layer.slice_data = upload.textureArray(source.slice_data, linear);
     layer.ground_colors = upload.textureArray(source.ground_colors, srgb);
     layer.ground_data = upload.textureArray(source.ground_data, linear);
+    layer.far_colors = upload.textureArray(source.far_colors, srgb);
     layer.cover = upload.buffer(std::span<const float>(source.cover.values), kStorage);
     layer.uniforms =
         gpu::makeBuffer(device, sizeof(shared::GrassUniforms),
                         vk::BufferUsageFlagBits::eUniformBuffer, gpu::MemoryUse::kToGpu);
-    source.slice_colors.clear();
-    source.slice_data.clear();
-    source.ground_colors.clear();
-    source.ground_data.clear();
+    for (auto* pictures : {&source.slice_colors, &source.slice_data, &source.ground_colors,
+                           &source.ground_data, &source.far_colors})
+      pictures->clear();
     layer.packed = std::move(source);
   }
   upload.finish();
@@ -101,6 +102,7 @@ GpuTerrain::GpuTerrain(const gpu::Device& device, PackedTerrain packed,
     layer.set->setTexture(4, *layer.ground_data, *samplers_[1]);
     layer.set->setBuffer(5, heights_);
     layer.set->setBuffer(6, layer.cover);
+    layer.set->setTexture(8, *layer.far_colors, *samplers_[0]);
   }
 }
 
@@ -111,7 +113,8 @@ GrassPass::GrassPass(const gpu::Device& device, vk::DescriptorSetLayout frame_se
           {vk::DescriptorType::eUniformBuffer, vk::DescriptorType::eCombinedImageSampler,
            vk::DescriptorType::eCombinedImageSampler, vk::DescriptorType::eCombinedImageSampler,
            vk::DescriptorType::eCombinedImageSampler, vk::DescriptorType::eStorageBuffer,
-           vk::DescriptorType::eStorageBuffer, vk::DescriptorType::eCombinedImageSampler},
+           vk::DescriptorType::eStorageBuffer, vk::DescriptorType::eCombinedImageSampler,
+           vk::DescriptorType::eCombinedImageSampler},
           vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment),
       depth_layout_(device, {vk::DescriptorType::eCombinedImageSampler},
                     vk::ShaderStageFlagBits::eFragment),
@@ -170,7 +173,7 @@ void GrassPass::prepare(GpuTerrain& terrain, const View& view, const gpu::Textur
     shared::GrassUniforms u = layer.packed.uniforms;
     const Terrain& t = terrain.terrain_;
     u.terrain = glm::vec4(t.corner - eye_place, t.spacing_m);
-    const bool in_shell = eye.y > ground && eye.y < ground + u.shell.x;
+    const bool in_shell = eye.y > ground && eye.y < ground + u.placing.y;
     u.terrain_size = glm::vec4(t.width, t.height, in_shell, layer.packed.ends_at_depth);
     u.terrain_range = glm::vec4(terrain.range_, 0.0f, 0.0f);
     const CoverMap& cover = layer.packed.cover;

@@ -28,7 +28,7 @@ class GpuTerrain {
   struct Layer {
     PackedGrass packed;  ///< without its textures' bytes
     bool grass = false;  ///< else it is bare ground
-    std::optional<gpu::Texture> slice_colors, slice_data, ground_colors, ground_data;
+    std::optional<gpu::Texture> slice_colors, slice_data, ground_colors, ground_data, far_colors;
     gpu::Buffer cover, uniforms;
     std::optional<gpu::DescriptorSet> set;
   };

@@ -43,6 +43,66 @@ void addLayer(const GrassMap& map, std::vector<std::vector<gpu::MipLevel>>& colo
   data.push_back(std::move(packed.data));
 }
 
+constexpr int kColumns = shared::kFarColumns, kRows = shared::kFarRows;
+std::size_t farTexel(int x, int y) {
+  return static_cast<std::size_t>(y * kColumns + x);
+}
+
+/// Means of a slice's texels, or the nearest of a coarser one's: premultiplied.
+std::vector<glm::vec4> farTexels(const GrassMap& slice) {
+  std::vector<glm::vec4> texels(kColumns * kRows);
+  for (int y = 0; y < kRows; ++y) {
+    const int top = y * slice.height / kRows;
+    const int bottom = std::max((y + 1) * slice.height / kRows, top + 1);
+    for (int x = 0; x < kColumns; ++x) {
+      const int left = x * slice.width / kColumns;
+      const int right = std::max((x + 1) * slice.width / kColumns, left + 1);
+      glm::vec4 sum(0.0f);
+      for (int j = top; j < bottom; ++j)
+        for (int i = left; i < right; ++i)
+          sum += slice.color[static_cast<std::size_t>(j) * static_cast<std::size_t>(slice.width) +
+                             static_cast<std::size_t>(i)];
+      texels[farTexel(x, y)] = sum / static_cast<float>((bottom - top) * (right - left));
+    }
+  }
+  return texels;
+}
+
+/// Colours are not premultiplied, and alpha is its root: what little stands at the top of the grass
+/// is all that is seen of it from afar. Where nothing is, the colour is that of the row below.
+gpu::MipLevel packFar(const std::vector<glm::vec4>& texels) {
+  gpu::MipLevel packed{kColumns, kRows, std::vector<std::uint8_t>(kColumns * kRows * 4)};
+  glm::vec3 below(0.0f);
+  for (int y = kRows - 1; y >= 0; --y) {
+    glm::vec4 row(0.0f);
+    for (int x = 0; x < kColumns; ++x) row += texels[farTexel(x, y)];
+    if (row.a > 0.0f) below = glm::vec3(row) / row.a;
+    for (int x = 0; x < kColumns; ++x) {
+      const glm::vec4& texel = texels[farTexel(x, y)];
+      const glm::vec3 color = texel.a > 1e-6f ? glm::vec3(texel) / texel.a : below;
+      std::uint8_t* const bytes = packed.rgba.data() + farTexel(x, y) * 4;
+      for (int c = 0; c < 3; ++c) bytes[c] = toByte(shared::srgbFromLinear(color[c]));
+      bytes[3] = toByte(std::sqrt(texel.a));
+    }
+  }
+  return packed;
+}
+
+/// shared::kFarLevels pictures, each mixed twice as widely along its rows as the last one.
+void addFar(std::vector<glm::vec4> texels, std::vector<std::vector<gpu::MipLevel>>& layers) {
+  for (int level = 0; level < shared::kFarLevels; ++level) {
+    layers.push_back({packFar(texels)});
+    const int step = 1 << level;
+    std::vector<glm::vec4> wider(texels.size());
+    for (int y = 0; y < kRows; ++y)
+      for (int x = 0; x < kColumns; ++x)
+        wider[farTexel(x, y)] = 0.5f * texels[farTexel(x, y)] +
+                                0.25f * (texels[farTexel((x + step) % kColumns, y)] +
+                                         texels[farTexel((x + kColumns - step) % kColumns, y)]);
+    texels = std::move(wider);
+  }
+}
+
 /// GrassUniforms::canopy: what slices that are crossed at random leave open above even heights.
 void setCanopy(const GrassSet& set, shared::GrassUniforms& u) {
   const int rows = set.slices[0].height;
@@ -82,13 +142,27 @@ void setCanopy(const GrassSet& set, shared::GrassUniforms& u) {
   }
   // The inverse of the depth.
   for (int i = 0; i <= shared::kCanopySteps; ++i) {
-    const float wanted = u.canopy[0].x * static_cast<float>(i) / shared::kCanopySteps;
+    const float root = static_cast<float>(i) / shared::kCanopySteps;
+    const float wanted = u.canopy[0].x * root * root;
     int step = shared::kCanopySteps;  // the highest whose lower neighbour is as deep
     while (step > 1 && u.canopy[step - 1].x < wanted) --step;
     const float low = u.canopy[step].x, high = u.canopy[step - 1].x;
     const float share = high > low ? std::clamp((wanted - low) / (high - low), 0.0f, 1.0f) : 0.0f;
     u.canopy[i].z = (static_cast<float>(step) - share) / shared::kCanopySteps;
   }
+}
+
+/// Nothing is seen above, with a texel for what filters add.
+float highestPlant(const GrassSet& set) {
+  std::size_t first = static_cast<std::size_t>(set.slices[0].height);
+  for (const GrassMap& slice : set.slices) {
+    const auto covered = std::find_if(slice.color.begin(), slice.color.end(),
+                                      [](const glm::vec4& texel) { return texel.a > 0.0f; });
+    first = std::min(first, static_cast<std::size_t>(covered - slice.color.begin()) /
+                                static_cast<std::size_t>(slice.width));
+  }
+  const float rows = static_cast<float>(set.slices[0].height);
+  return set.height_m * std::min((rows - static_cast<float>(first) + 1.0f) / rows, 1.0f);
 }
 
 void setMean(const GrassSet& set, shared::GrassUniforms& u) {
@@ -127,7 +201,15 @@ PackedGrass packGrass(const GrassLayer& layer) {
   if (layer.cover != nullptr) checkCoverMap(*layer.cover, "cover of " + set.name);
 
   PackedGrass packed;
-  for (const GrassMap& slice : set.slices) addLayer(slice, packed.slice_colors, packed.slice_data);
+  std::vector<glm::vec4> mean(kColumns * kRows, glm::vec4(0.0f));
+  for (const GrassMap& slice : set.slices) {
+    addLayer(slice, packed.slice_colors, packed.slice_data);
+    const std::vector<glm::vec4> texels = farTexels(slice);
+    addFar(texels, packed.far_colors);
+    for (std::size_t i = 0; i < texels.size(); ++i)
+      mean[i] += texels[i] / static_cast<float>(set.slices.size());
+  }
+  addFar(mean, packed.far_colors);
   addLayer(set.opaque, packed.slice_colors, packed.slice_data);
   addLayer(set.ground, packed.ground_colors, packed.ground_data);
   if (!set.middle.empty()) addLayer(set.middle, packed.ground_colors, packed.ground_data);
@@ -146,7 +228,7 @@ PackedGrass packGrass(const GrassLayer& layer) {
   const float c = std::cos(layer.turn), s = std::sin(layer.turn);
   u.rows = layer.mirrored ? glm::vec4(c, s, s, -c) : glm::vec4(c, s, -s, c);
   u.cover_size = glm::vec4(packed.cover.width, packed.cover.height, layer.density, layer.variation);
-  u.placing = glm::vec4(layer.scatter, 0.0f, 0.0f, 0.0f);
+  u.placing = glm::vec4(layer.scatter, highestPlant(set), 0.0f, 0.0f);
   u.soil = glm::vec4(set.species.soil_color, 0.0f);
   setCanopy(set, u);
   setMean(set, u);

@@ -15,6 +15,8 @@ struct PackedGrass {
   /// Layers of textures with their mips: each kind of slice, then the opaque one.
   std::vector<std::vector<gpu::MipLevel>> slice_colors, slice_data;
   std::vector<std::vector<gpu::MipLevel>> ground_colors, ground_data;  ///< ground, middle
+  /// shared::kFarLevels of each kind of slice and of all kinds' mean: colour, root of alpha.
+  std::vector<std::vector<gpu::MipLevel>> far_colors;
   CoverMap cover;
   shared::GrassUniforms uniforms{};
   bool ends_at_depth = true, medium = true;

@@ -8,6 +8,7 @@ layout(set = 1, binding = 4) uniform sampler2DArray ground_data;
 layout(set = 1, binding = 5, std430) readonly buffer Heights { float heights[]; };
 layout(set = 1, binding = 6, std430) readonly buffer Cover { float cover[]; };
 layout(set = 1, binding = 7) uniform sampler2D scene_depth;  // nearest, farthest of the samples
+layout(set = 1, binding = 8) uniform sampler2DArray far_colors;   // kFarLevels of each kind and of their mean
 
 /// The ground's height at x, z from the eye.
 float groundHeight(vec2 from_eye) {

@@ -25,7 +25,7 @@ void main() {
     vec2 around = vec2(groundHeight(place + x) + groundHeight(place - x),
                        groundHeight(place + z) + groundHeight(place - z));
     vec2 bulge = max(2.0 * height - around, 0.0) / 4.0;
-    height += grass.shell.x + bulge.x + bulge.y;
+    height += grass.placing.y + bulge.x + bulge.y;
   }
   from_eye = vec3(place.x, height - eye.y, place.y);
   gl_Position = clipFromEye(from_eye);

@@ -129,6 +129,12 @@ SHARED_FUNCTION float shellCrossing(ShellPath path, float height, bool rising) {
   return t > 0.0f ? t : kFarAway;
 }
 
+/// What slices look like from afar: pictures of so many columns and rows, each in so many levels;
+/// a level's columns are mixed twice as widely as the last one's, its rows are not.
+const int kFarColumns = 64;
+const int kFarRows = 64;
+const int kFarLevels = 6;
+
 /// Steps of canopy[]: over the shell's height.
 const int kCanopySteps = 16;
 
@@ -149,11 +155,12 @@ struct GrassUniforms {
   vec4 blades;         ///< distances between which near blades fade out; both 0: there are none
   vec4 soil;           ///< reflectance
   vec4 mean;           ///< reflectance of the plants; w = what is transmitted, in shares of that
-  vec4 placing;        ///< how far slices are off their even distances, in shares of them
+  vec4 placing;        ///< how far slices are off their even distances, in shares of them; height
+                       ///< of the highest plant
   vec4 scroll;         ///< how far the wind's noise has come, [0, 1): x, z at two sizes
   /// At even heights: optical depth of the slices above, for one slice a metre along the ground
   /// (times metres along the ground); how much of the sky is seen. z: the height in shares of the
-  /// shell's where that depth has grown to an even share of all, from 0 at the top.
+  /// shell's where that depth has grown to a share of all of which the root is even.
   vec4 canopy[17];
   MotionMoment moment;
 };

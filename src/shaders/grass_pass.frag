@@ -175,7 +175,6 @@ float traceSlices(inout Met met, GrassRay ray, float end_t) {
   SliceWalk v = firstSlice(ray.past_plane.y, ray.d.y, grass.eye_cell.y, grass.shell.z, 1u);
   float height = grass.shell.x;
   float middle_t = grass.limits.z > 0.0 ? shellCrossing(ray.path, 0.5 * height * ray.tall, false) : kFarAway;
-  float texel_lod = log2(max(grass.texels.x, grass.texels.y) * grass.texels.w);
   int most = int(grass.limits.x);
   bool across_u = false;
   float t = 0.0;

@@ -45,6 +45,7 @@ struct GrassRay {
   vec2 bend;       // of tips, along u and v, m
   float sinks;     // how much longer bent blades are than they are high
   ShellPath path;
+  float reach;     // that it holds for
   float tall;      // of the shell's height that this grass has
   float density;
   float blades;    // share that is drawn as blades
@@ -112,13 +113,21 @@ void meetSlices(inout Met met, GrassRay ray, bool across_u, uint number, float t
 const int kFarSteps = 5;
 void traceMedium(inout Met met, GrassRay ray, float from_t, inout float end_t) {
   vec2 rates = abs(ray.d) / grass.shell.yz;
-  float slope = max(-ray.path.slope - 2.0 * ray.path.curve * from_t, 1e-4);
-  float rate = max(rates.x + rates.y, 1e-6), fall = slope / rate;
+  // Down to the lowest place on the way, with one slope; over a ridge it rises again.
+  float limit_t = min(end_t, max(ray.reach, from_t + 1e-3));
+  float turn_t = ray.path.curve > 1e-7 ? -0.5 * ray.path.slope / ray.path.curve : kFarAway;
+  float low_t = max(min(limit_t, turn_t), from_t + 1e-3);
   float w_from = shellHeight(ray.path, from_t), top = w_from;
+  float w_low = clamp(shellHeight(ray.path, low_t), 0.0, w_from);
+  float slope = max((w_from - w_low) / (low_t - from_t), 1e-5);
+  float rate = max(rates.x + rates.y, 1e-6), fall = slope / rate;
+  float times = turn_t < limit_t ? 2.0 : 1.0;
   // Optical depth over that of the whole shell; at 4 nothing is seen behind.
   float whole = max(grass.canopy[0].x * ray.density, 1e-6);
   float before = min(canopyAt(w_from / ray.tall).x / grass.canopy[0].x, 1.0);
-  float last = min(before + 4.0 * fall / whole, 1.0);
+  float deepest = canopyAt(w_low / ray.tall).x / grass.canopy[0].x;
+  float enough = before + 4.0 * fall / whole;
+  float last = max(min(enough, deepest), before);
   float root = sqrt(before), more = sqrt(last) - root;
   // Neighbouring slices that fall into a pixel are taken as one.
   float together = exp2(ceil(log2(max(ray.t_start * grass.texels.w / fall, 1.0))));
@@ -131,13 +140,13 @@ void traceMedium(inout Met met, GrassRay ray, float from_t, inout float end_t) {
     float w = clamp(heightOfDepth(sqrt(0.5 * (begin * begin + end * end))) * ray.tall, bottom, top);
     t = from_t + (w_from - w) / slope;
     bool across_u = (i & 1) == 0;
-    float count = max(top - bottom, 0.0) / fall * (across_u ? rates.x : rates.y) / rate;
+    float count = times * max(top - bottom, 0.0) / fall * (across_u ? rates.x : rates.y) / rate;
     vec2 plane = floor((ray.past_plane + ray.d * t) / (grass.shell.yz * together)) * together;
     uint number = across_u ? grass.eye_cell.x + uint(int(plane.x)) : grass.eye_cell.y + uint(int(plane.y));
     if (count > 0.01 && t < end_t) meetSlices(met, ray, across_u, number, t, w, count);
     if (!across_u) top = bottom;
   }
-  if (last < 1.0 && t < end_t) {
+  if (enough < deepest) {
     if (kBase && met.alpha > 0.0) {
       float fill = 1.0 / met.alpha;
       met.sunlit *= fill;
@@ -194,7 +203,8 @@ float traceSlices(inout Met met, GrassRay ray, float end_t) {
     float lod = sliceLod(ray.t_start + t, across);
     uint number = across_u ? grass.eye_cell.x + uint(u.plane) : grass.eye_cell.y + uint(v.plane);
     bool last = !kMedium && kBase && i == most - 1;
-    meetSlice(met, ray, across_u, number, t, shellHeight(ray.path, t), lod, last);
+    float w = shellHeight(ray.path, t);
+    if (w < grass.placing.y * ray.tall) meetSlice(met, ray, across_u, number, t, w, lod, last);
     if (last) met.alpha = 1.0;
     if (across_u)
       u = nextSlice(u, ray.past_plane.x, ray.d.x, grass.eye_cell.x, grass.shell.y, 0u);
@@ -202,6 +212,47 @@ float traceSlices(inout Met met, GrassRay ray, float end_t) {
       v = nextSlice(v, ray.past_plane.y, ray.d.y, grass.eye_cell.y, grass.shell.z, 1u);
   }
   return t;
+}
+
+/// Over the ground, of a place from the eye.
+float heightAbove(vec3 place) {
+  return frame.eye.y + place.y - groundHeight(place.xz);
+}
+
+/// Where a ray that has entered the shell comes to the ground or out of the shell again; or, neither
+/// of both, as far as it was looked for.
+struct ShellEnd {
+  float t;
+  bool ground;
+  bool above;
+};
+ShellEnd endOfShell(vec3 start, vec3 direction, float w_start, float t_start) {
+  float cell = max(min(grass.terrain.z, grass.terrain.w), 0.02 * t_start);
+  // What is drawn may lie above the shell: a ray that leaves the one and not the other comes back.
+  float top = 1.5 * max(grass.placing.y, w_start);
+  float step = min(0.25 * top / max(-direction.y, 0.02), cell);
+  float t = 0.0, w = w_start;
+  ShellEnd end = ShellEnd(0.0, false, false);
+  for (int i = 0; i < 16 && !end.ground && !end.above; ++i) {
+    float next_w = heightAbove(start + direction * (t + step));
+    if (next_w <= 0.0) {
+      // Between two heights the ground is nearly even.
+      float way = step * w / (w - next_w);
+      float middle_w = heightAbove(start + direction * (t + way));
+      way += middle_w > 0.0 ? (step - way) * middle_w / (middle_w - next_w)
+                            : way * middle_w / (w - middle_w);
+      end = ShellEnd(t + way, true, false);
+    } else if (next_w >= top && next_w > w) {
+      end = ShellEnd(t + step * (top - w) / (next_w - w), false, true);
+    } else {
+      t += step;
+      w = next_w;
+      step *= 1.25;
+      end.t = t;
+    }
+  }
+  end.t = max(end.t, 1e-4);
+  return end;
 }
 
 void main() {
@@ -227,18 +278,16 @@ void main() {
     start = vec3(0.0);
     t_start = 0.0;
   }
-  float w_start = frame.eye.y + start.y - groundHeight(start.xz);
+  float w_start = heightAbove(start);
   // What is drawn lies a little above the shell where the ground is curved.
-  vec2 cell = grass.terrain.zw;
-  for (int i = 0; i < 4 && w_start > 1.001 * top; ++i) {
-    float ahead = 0.25 * min(cell.x, cell.y);
+  float ahead = 0.25 * min(grass.terrain.z, grass.terrain.w);
+  for (int i = 0; i < 6 && w_start > 1.001 * top; ++i) {
     vec3 next = start + direction * ahead;
-    float fall = (w_start - (frame.eye.y + next.y - groundHeight(next.xz))) / ahead;
-    if (fall < 1e-3) discard;
-    float way = (w_start - top) / fall;
+    float fall = (w_start - heightAbove(next)) / ahead;
+    float way = min((w_start - top) / max(fall, 1e-6), max(4.0 * ahead, 0.02 * t_start));
     start += direction * way;
     t_start += way;
-    w_start = frame.eye.y + start.y - groundHeight(start.xz);
+    w_start = heightAbove(start);
   }
 
   GrassRay ray;
@@ -259,11 +308,12 @@ void main() {
   ray.past_tile = grass.eye.zw + at;
 
   float rate = abs(ray.d.x) / grass.shell.y + abs(ray.d.y) / grass.shell.z;
-  float reach = min(grass.limits.x / max(rate, 1e-3), 8.0 * height / max(-direction.y, 0.02));
-  vec3 half_way = start + direction * (0.5 * reach), end = start + direction * reach;
-  ray.path = shellPath(w_start, frame.eye.y + half_way.y - groundHeight(half_way.xz),
-                       frame.eye.y + end.y - groundHeight(end.xz), reach);
-  float ground_t = shellCrossing(ray.path, 0.0, false), exit_t = shellCrossing(ray.path, top, true);
+  ShellEnd shell_end = endOfShell(start, direction, w_start, t_start);
+  float reach = shell_end.t;
+  ray.reach = reach;
+  ray.path = shellPath(w_start, heightAbove(start + direction * (0.5 * reach)),
+                       heightAbove(start + direction * reach), reach);
+  float ground_t = shell_end.ground ? reach : kFarAway, exit_t = shell_end.above ? reach : kFarAway;
   float scene_t = kFarAway;
   if (grass.terrain_size.w > 0.0) {
     // Only where the whole pixel sees one surface: at its edges the depth test decides.

@@ -44,6 +44,7 @@ struct GrassLayer {
   bool mirrored = false;            ///< v runs against z
   int most_slices = 32;             ///< on a ray, [1, 256]; what is open behind them is filled
   float scatter = 0.6f;  ///< how far slices are off even distances, in shares of them, [0, 0.9]
+  bool blades = true;     ///< plants near the eye are drawn one by one, as ribbons
   bool middle = true;    ///< the level slice, where the set has one
   /// Rays end at what stands in the grass; else it is hidden by whole pixels, where they are more
   /// than about half covered.

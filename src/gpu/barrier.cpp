@@ -23,6 +23,9 @@ UseInfo useInfo(Use use) {
               Layout::eDepthAttachmentOptimal};
     case Use::kFragmentSampled:
       return {Stage::eFragmentShader, Access::eShaderSampledRead, Layout::eShaderReadOnlyOptimal};
+    case Use::kDrawSampled:
+      return {Stage::eVertexShader | Stage::eFragmentShader, Access::eShaderSampledRead,
+              Layout::eShaderReadOnlyOptimal};
     case Use::kComputeSampled:
       return {Stage::eComputeShader, Access::eShaderSampledRead, Layout::eShaderReadOnlyOptimal};
     case Use::kVertexInput:
@@ -33,6 +36,8 @@ UseInfo useInfo(Use use) {
     case Use::kComputeStorage:
       return {Stage::eComputeShader, Access::eShaderStorageRead | Access::eShaderStorageWrite,
               Layout::eUndefined};
+    case Use::kIndirect:
+      return {Stage::eDrawIndirect, Access::eIndirectCommandRead, Layout::eUndefined};
     case Use::kFragmentStorage:
       return {Stage::eFragmentShader, Access::eShaderStorageRead, Layout::eUndefined};
     case Use::kHostRead:

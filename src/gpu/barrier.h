@@ -14,10 +14,12 @@ enum class Use {
   kColorAttachment,  ///< drawn to, blended or resolved to
   kDepthAttachment,  ///< depth-tested and written
   kFragmentSampled,  ///< sampled in a fragment shader
+  kDrawSampled,      ///< sampled in vertex and fragment shaders
   kComputeSampled,   ///< sampled in a compute shader
   kVertexInput,      ///< vertex and index buffer
   kVertexStorage,    ///< storage buffer that a vertex shader reads
   kComputeStorage,   ///< storage buffer of a compute shader, read and written
+  kIndirect,         ///< buffer that an indirect draw reads
   kFragmentStorage,  ///< storage buffer that a fragment shader reads
   kHostRead,         ///< read on the CPU after a fence
 };

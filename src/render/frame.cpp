@@ -74,6 +74,8 @@ FrameDrawer::FrameDrawer(const gpu::Device& device)
       shadow_pass_(),
       blocker_pass_(device),
       grass_pass_(device, *layout_.frame_set.layout),
+      grass_blades_(device, *layout_.frame_set.layout, grass_pass_.setLayout()),
+      grass_billboards_(device, *layout_.frame_set.layout, grass_pass_.setLayout()),
       exposure_pass_(device),
       bloom_pass_(device),
       tone_pass_(device),
@@ -273,12 +275,17 @@ void FrameDrawer::recordColor(const vk::raii::CommandBuffer& commands, const Gpu
   gpu::imageBarrier(commands, *targets_->depth.image, kDepthAspect, gpu::Use::kUndefined,
                     gpu::Use::kDepthAttachment);
   const bool terrain = scene.terrain() != nullptr;
-  beginColor(commands, true, !terrain);
+  const bool billboards = terrain && billboard_trial_;
+  beginColor(commands, true, !terrain || billboards);
   plant_pass_.record(commands, layout_, *frame_set_, scene, view.terms);
+  if (terrain && !billboards)
+    grass_blades_.record(commands, *frame_set_, *scene.terrain(), view.terms, kind);
   backdrop_pass_.record(commands, layout_, *frame_set_, view.terms, kind,
                         scene.ground() && !terrain);
+  if (billboards)
+    grass_billboards_.record(commands, *frame_set_, *scene.terrain(), grass_pass_.nodeCount());
   commands.endRendering();
-  if (!terrain) return;
+  if (!terrain || billboards) return;
   grass_pass_.recordDepthRange(commands, targets_->depth);
   gpu::imageBarrier(commands, *targets_->color.image, kColorAspect, gpu::Use::kColorAttachment,
                     gpu::Use::kColorAttachment);
@@ -365,6 +372,9 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
   if (scene.terrain() != nullptr)
     grass_pass_.prepare(*scene.terrain(), view, targets_->depth, new_targets, kind,
                         uniforms.ground.y);
+  if (scene.terrain() != nullptr) grass_blades_.prepare(*scene.terrain(), view, kind);
+  if (scene.terrain() != nullptr && billboard_trial_)
+    grass_billboards_.prepare(*scene.terrain(), view, kind, *billboard_trial_);
 
   device_->submit([&](const vk::raii::CommandBuffer& commands) {
     timers_.reset(commands);
@@ -389,6 +399,7 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
     }
     blocker_pass_.record(commands, depth_maps ? cascade_count : 0);
     timers_.stamp(commands, 2);
+    if (scene.terrain() != nullptr) grass_blades_.recordChoice(commands, *scene.terrain());
     recordColor(commands, scene, view, kind);
     timers_.stamp(commands, 3);
     recordTone(commands, view, units);

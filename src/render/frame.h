@@ -11,6 +11,8 @@
 #include "render/exposure_pass.h"
 #include "render/frame_layout.h"
 #include "render/frame_light.h"
+#include "render/grass_billboards.h"
+#include "render/grass_blades.h"
 #include "render/grass_pass.h"
 #include "render/ground_light.h"
 #include "render/light_depth_pass.h"
@@ -34,7 +36,10 @@ class FrameDrawer {
   const gpu::SetLayout& grassLayout() const { return grass_pass_.setLayout(); }
   const gpu::SetLayout& transferLayout() const { return transfer_pass_.setLayout(); }
   /// The next frame shows another scene.
-  void forgetScene() { ++scene_id_; }
+  void forgetScene() {
+    ++scene_id_;
+    grass_blades_.forget();
+  }
 
   /// Draws and reads back. Throws Error for sizes out of range.
   Frame draw(GpuScene& scene, const View& view);
@@ -45,6 +50,9 @@ class FrameDrawer {
     bool snap = true;                   ///< CascadeRequest::snap
   };
   void tryCascades(const CascadeTrial& trial) { cascade_trial_ = trial; }
+  /// In tests and measurements alone: the first layer of grass as polygons instead of rays.
+  void tryBillboards(const std::optional<BillboardTrial>& trial) { billboard_trial_ = trial; }
+  const GrassBillboards& billboards() const { return grass_billboards_; }
 
  private:
   void checkView(const View& view) const;
@@ -72,6 +80,8 @@ class FrameDrawer {
   VelocityPass velocity_pass_;
   BackdropPass backdrop_pass_;
   GrassPass grass_pass_;
+  GrassBlades grass_blades_;
+  GrassBillboards grass_billboards_;
   ExposurePass exposure_pass_;
   BloomPass bloom_pass_;
   TonePass tone_pass_;
@@ -89,6 +99,7 @@ class FrameDrawer {
   GroundLight ground_light_;
   std::optional<gpu::Texture> shadow_maps_, foliage_maps_;  ///< a layer for each cascade
   CascadeTrial cascade_trial_;
+  std::optional<BillboardTrial> billboard_trial_;
   std::optional<Targets> targets_;
   std::shared_ptr<const Sky> known_sky_;
   Harmonics known_harmonics_;  ///< of it

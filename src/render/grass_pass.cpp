@@ -24,7 +24,6 @@ constexpr std::uint32_t kDepthRange[] = {
 #include "shaders/depth_range.frag.inc"
 };
 constexpr vk::Format kRangeFormat = vk::Format::eR32G32Sfloat;
-constexpr std::uint32_t kCells = 16;  ///< along a node of the terrain
 
 /// Floor of x / step, and what is left.
 std::pair<std::int64_t, double> cellOf(double x, double step) {
@@ -35,7 +34,7 @@ std::pair<std::int64_t, double> cellOf(double x, double step) {
 TerrainLevels levelsOf(const Terrain& terrain, const glm::vec2& range, float radius) {
   TerrainLevels levels;
   levels.finest_m = std::max(0.5f * std::min(terrain.spacing_m.x, terrain.spacing_m.y), 0.25f);
-  levels.cells = static_cast<int>(kCells);
+  levels.cells = static_cast<int>(kTerrainCells);
   levels.radius_m = std::min(radius, 0x1p19f * levels.finest_m);
   levels.heights = range;
   return levels;
@@ -115,7 +114,8 @@ GrassPass::GrassPass(const gpu::Device& device, vk::DescriptorSetLayout frame_se
            vk::DescriptorType::eCombinedImageSampler, vk::DescriptorType::eStorageBuffer,
            vk::DescriptorType::eStorageBuffer, vk::DescriptorType::eCombinedImageSampler,
            vk::DescriptorType::eCombinedImageSampler},
-          vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment),
+          vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment |
+              vk::ShaderStageFlagBits::eCompute),
       depth_layout_(device, {vk::DescriptorType::eCombinedImageSampler},
                     vk::ShaderStageFlagBits::eFragment),
       layout_(gpu::makePipelineLayout(device, std::array{frame_set, *set_layout_.layout})),
@@ -131,7 +131,7 @@ gpu::Constants GrassPass::constantsOf(const GpuTerrain& terrain, std::size_t lay
   DrawKind grass = kind;
   grass.transmission = terms.transmission;
   gpu::Constants constants = termConstants(terms, grass);
-  constants.insert(constants.end(), {terrain.layers_[layer].grass, layer == 0, kCells,
+  constants.insert(constants.end(), {terrain.layers_[layer].grass, layer == 0, kTerrainCells,
                                      terrain.layers_[layer].packed.medium});
   return constants;
 }
@@ -149,10 +149,14 @@ void GrassPass::prepare(GpuTerrain& terrain, const View& view, const gpu::Textur
   }
   const float aspect = static_cast<float>(view.width) / static_cast<float>(view.height);
   const TerrainLevels levels = levelsOf(terrain.terrain_, terrain.range_, radius);
+  // At least one for each vertex: the validation layer takes as many for read, although these are
+  // instances.
   if (terrain.nodes_.size == 0)
-    terrain.nodes_ =
-        gpu::makeBuffer(*device_, mostTerrainNodes(levels) * sizeof(shared::TerrainNode),
-                        vk::BufferUsageFlagBits::eVertexBuffer, gpu::MemoryUse::kToGpu);
+    terrain.nodes_ = gpu::makeBuffer(
+        *device_,
+        std::max<std::size_t>(mostTerrainNodes(levels), 6 * kTerrainCells * kTerrainCells) *
+            sizeof(shared::TerrainNode),
+        vk::BufferUsageFlagBits::eVertexBuffer, gpu::MemoryUse::kToGpu);
   std::vector<shared::TerrainNode> nodes =
       selectTerrainNodes(levels, view.camera.eye, clipFromWorld(view.camera, aspect));
   const std::size_t room = terrain.nodes_.size / sizeof(shared::TerrainNode);
@@ -175,7 +179,7 @@ void GrassPass::prepare(GpuTerrain& terrain, const View& view, const gpu::Textur
     u.terrain = glm::vec4(t.corner - eye_place, t.spacing_m);
     const bool in_shell = eye.y > ground && eye.y < ground + u.placing.y;
     u.terrain_size = glm::vec4(t.width, t.height, in_shell, layer.packed.ends_at_depth);
-    u.terrain_range = glm::vec4(terrain.range_, 0.0f, 0.0f);
+    u.terrain_range = glm::vec4(terrain.range_, eye.y, 0.0f);
     const CoverMap& cover = layer.packed.cover;
     u.cover =
         glm::vec4(cover.corner - eye_place, glm::vec2(cover.width, cover.height) / cover.size_m);
@@ -244,7 +248,7 @@ void GrassPass::record(const vk::raii::CommandBuffer& commands, vk::DescriptorSe
                           *pipelines_.at(constantsOf(terrain, i, terms, kind)));
     commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout_, 0,
                                 {frame_set, **terrain.layers_[i].set}, nullptr);
-    commands.draw(6 * kCells * kCells, nodes_, 0, 0);
+    commands.draw(6 * kTerrainCells * kTerrainCells, nodes_, 0, 0);
   }
 }
 

@@ -10,6 +10,9 @@
 
 namespace verdure {
 
+/// Cells along a node of the terrain.
+constexpr std::uint32_t kTerrainCells = 16;
+
 /// The ground of a scene that is more than a plane, packed.
 struct PackedTerrain {
   Terrain terrain;
@@ -25,6 +28,8 @@ class GpuTerrain {
 
  private:
   friend class GrassPass;
+  friend class GrassBlades;
+  friend class GrassBillboards;
   struct Layer {
     PackedGrass packed;  ///< without its textures' bytes
     bool grass = false;  ///< else it is bare ground
@@ -45,6 +50,8 @@ class GrassPass {
  public:
   GrassPass(const gpu::Device& device, vk::DescriptorSetLayout frame_set);
   const gpu::SetLayout& setLayout() const { return set_layout_; }
+  /// Of the terrain that was prepared last, 6 kTerrainCells^2 vertices each.
+  std::uint32_t nodeCount() const { return nodes_; }
 
   /// What depends on the eye and the time; `depth`: of the samples of what stands in the grass.
   void prepare(GpuTerrain& terrain, const View& view, const gpu::Texture& depth, bool new_depth,

@@ -152,6 +152,18 @@ void setCanopy(const GrassSet& set, shared::GrassUniforms& u) {
   }
 }
 
+/// How far plants are drawn one by one: so that their ribbons in a picture a sixth of a turn wide
+/// are about as many as that.
+float bladeDistance(const std::vector<GrassPlant>& plants) {
+  constexpr float kRibbons = 60000.0f;
+  float per_m2 = 0.0f;
+  for (const GrassPlant& plant : plants)
+    for (const GrassPart& part : plant.parts)
+      per_m2 += plant.per_m2 * static_cast<float>(part.count);
+  if (per_m2 <= 0.0f) return 0.0f;
+  return std::clamp(std::sqrt(kRibbons * 6.0f / (glm::pi<float>() * per_m2)), 1.0f, 10.0f);
+}
+
 /// Nothing is seen above, with a texel for what filters add.
 float highestPlant(const GrassSet& set) {
   std::size_t first = static_cast<std::size_t>(set.slices[0].height);
@@ -228,6 +240,12 @@ PackedGrass packGrass(const GrassLayer& layer) {
   const float c = std::cos(layer.turn), s = std::sin(layer.turn);
   u.rows = layer.mirrored ? glm::vec4(c, s, s, -c) : glm::vec4(c, s, -s, c);
   u.cover_size = glm::vec4(packed.cover.width, packed.cover.height, layer.density, layer.variation);
+  if (layer.blades) {
+    packed.plants = set.species.plants;
+    std::erase_if(packed.plants, [](const GrassPlant& plant) { return plant.per_m2 <= 0.0f; });
+    const float far = bladeDistance(packed.plants);
+    u.blades = glm::vec4(0.5f * far, far, 0.0f, 0.0f);
+  }
   u.placing = glm::vec4(layer.scatter, highestPlant(set), 0.0f, 0.0f);
   u.soil = glm::vec4(set.species.soil_color, 0.0f);
   setCanopy(set, u);

@@ -18,6 +18,7 @@ struct PackedGrass {
   /// shared::kFarLevels of each kind of slice and of all kinds' mean: colour, root of alpha.
   std::vector<std::vector<gpu::MipLevel>> far_colors;
   CoverMap cover;
+  std::vector<GrassPlant> plants;  ///< of which those near the eye are drawn one by one
   shared::GrassUniforms uniforms{};
   bool ends_at_depth = true, medium = true;
 };

@@ -48,7 +48,6 @@ struct GrassRay {
   float reach;     // that it holds for
   float tall;      // of the shell's height that this grass has
   float density;
-  float blades;    // share that is drawn as blades
   vec3 tint;
   Light light;
 };
@@ -60,15 +59,24 @@ vec3 slicePlaceAt(GrassRay ray, bool across_u, uint number, float t, float w) {
   return slicePicture(across_u, number, across_u ? here.y : here.x, at_rest);
 }
 
+/// Share of the plants that are drawn as blades where the ray is at t, w above the ground.
+float bladesAt(GrassRay ray, float t, float w) {
+  if (grass.blades.y <= 0.0) return 0.0;
+  vec3 root = ray.start + ray.direction * t - vec3(0.0, w, 0.0);
+  return 1.0 - smoothstep(grass.blades.x, grass.blades.y, length(root));
+}
+
 /// A slice's texel at t; of the opaque slice if it is the last.
 void meetSlice(inout Met met, GrassRay ray, bool across_u, uint number, float t, float w, float lod,
                bool last) {
+  float blades = last ? 0.0 : bladesAt(ray, t, w);
+  if (blades >= 1.0) return;
   vec3 uv = slicePlaceAt(ray, across_u, number, t, w);
   if (last) uv.z = grass.limits.w;
   vec4 color = textureLod(slice_colors, uv, lod);
   if (color.a <= 0.0) return;
   vec4 data = unpackGrassData(textureLod(slice_data, uv, lod));
-  if (!last) thin(color, data, ray.density, ray.blades, lod);
+  if (!last) thin(color, data, ray.density, blades, lod);
   vec3 right = axisOf(across_u), up = vec3(0.0, 1.0, 0.0), toward = cross(right, up);
   bool behind = dot(toward, ray.direction) > 0.0;
   meet(met, color, data, right, up, behind ? -toward : toward, behind, w, ray.t_start + t, ray.tint,
@@ -78,7 +86,7 @@ void meetSlice(inout Met met, GrassRay ray, bool across_u, uint number, float t,
 /// Texels of the ground, or of the level slice, at t.
 void meetLevel(inout Met met, GrassRay ray, float t, float layer, float share, vec2 off, vec3 n, float w) {
   meetLevel(met, ray.past_tile + ray.d * t - off, ray.t_start + t, ray.direction, layer, share, n, w,
-            ray.density, ray.blades, ray.tint, ray.light);
+            ray.density, bladesAt(ray, t, w), ray.tint, ray.light);
 }
 
 /// Where the optical depth of the shell has grown to a share of all, by the root of that.
@@ -100,7 +108,7 @@ void meetSlices(inout Met met, GrassRay ray, bool across_u, uint number, float t
   float share = 1.0 / max(slices, 1.0);
   float a = mix(mean.a * mean.a, one.a * one.a, share);
   if (a <= 0.0) return;
-  float alpha = 1.0 - pow(1.0 - min(a * ray.density * (1.0 - ray.blades), 0.99), slices);
+  float alpha = 1.0 - pow(1.0 - min(a * ray.density * (1.0 - bladesAt(ray, t, w)), 0.99), slices);
   vec4 color = vec4(mix(mean.rgb, one.rgb, share * one.a * one.a / a) * alpha, alpha);
   vec3 right = axisOf(across_u), up = vec3(0.0, 1.0, 0.0), toward = cross(right, up);
   bool behind = dot(toward, ray.direction) > 0.0;
@@ -296,7 +304,6 @@ void main() {
   ray.t_start = t_start;
   vec3 place = frame.eye.xyz + start;
   ray.density = clamp(coverAt(start.xz), 0.0, 1.0);
-  ray.blades = grass.blades.y > 0.0 ? 1.0 - smoothstep(grass.blades.x, grass.blades.y, t_start) : 0.0;
   ray.tall = grassHeight(ray.density);
   ray.tint = grassTint(place.xz, t_start);
   vec2 bend = grassBend(grass.moment, place, windNoise(place));
@@ -324,7 +331,7 @@ void main() {
   if (scene_t <= 0.0) discard;
   float end_t = min(min(ground_t, exit_t), scene_t);
 
-  ray.light = lightAt(start, sidewaysLight(direction));
+  ray.light = lightAt(start, sidewaysLight(direction), direction);
 
   Met met = Met(vec3(0.0), vec3(0.0), 0.0, -1.0, -1.0);
   // Slices in a pixel, one behind the other: many look like a medium, and so does what is behind as

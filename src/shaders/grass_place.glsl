@@ -39,19 +39,6 @@ vec3 terrainNormal(vec2 place) {
   return normalize(vec3(-x / (2.0 * step.x), 1.0, -z / (2.0 * step.y)));
 }
 
-/// The layer's density at x, z from the eye.
-float coverAt(vec2 place) {
-  vec2 size = grass.cover_size.xy;
-  if (size.x == 1.0 && size.y == 1.0) return cover[0] * grass.cover_size.z;
-  vec2 at = clamp((place - grass.cover.xy) * grass.cover.zw - 0.5, vec2(0.0), size - 1.0);
-  uvec2 low = uvec2(at), high = min(low + 1u, uvec2(size) - 1u);
-  vec2 share = at - vec2(low);
-  uint width = uint(size.x);
-  float top = mix(cover[low.y * width + low.x], cover[low.y * width + high.x], share.x);
-  float bottom = mix(cover[high.y * width + low.x], cover[high.y * width + high.x], share.x);
-  return mix(top, bottom, share.y) * grass.cover_size.z;
-}
-
 /// Noise of wind in [-1, 1] at two sizes, that goes with it.
 vec2 windNoise(vec3 place) {
   vec2 broad = place.xz / kWindNoise_m - grass.scroll.xy;

@@ -19,6 +19,19 @@ float groundHeight(vec2 from_eye) {
                              heights[below + 1u]), at.share);
 }
 
+/// The layer's density at x, z from the eye.
+float coverAt(vec2 place) {
+  vec2 size = grass.cover_size.xy;
+  if (size.x == 1.0 && size.y == 1.0) return cover[0] * grass.cover_size.z;
+  vec2 at = clamp((place - grass.cover.xy) * grass.cover.zw - 0.5, vec2(0.0), size - 1.0);
+  uvec2 low = uvec2(at), high = min(low + 1u, uvec2(size) - 1u);
+  vec2 share = at - vec2(low);
+  uint width = uint(size.x);
+  float top = mix(cover[low.y * width + low.x], cover[low.y * width + high.x], share.x);
+  float bottom = mix(cover[high.y * width + low.x], cover[high.y * width + high.x], share.x);
+  return mix(top, bottom, share.y) * grass.cover_size.z;
+}
+
 /// Nothing is lost far from the origin, where the eye's own coordinates are coarse.
 vec4 clipFromEye(vec3 from_eye) {
   return frame.clip_from_world * vec4(from_eye, 0.0) +

@@ -135,6 +135,23 @@ const int kFarColumns = 64;
 const int kFarRows = 64;
 const int kFarLevels = 6;
 
+/// How leaves that stand upright and face all ways face the sun: means, over those that a looker
+/// sees, of the cosines on the side that he sees and on the other, the phase functions of a matt
+/// cylinder; and their share that faces up. `toward`: unit, to the looker; `tilt`: sine of how far
+/// their normals are off the horizon.
+SHARED_FUNCTION vec3 meanFacing(vec3 toward, vec3 to_sun, float tilt) {
+  float level = sqrt(max(1.0f - tilt * tilt, 0.0f));
+  float aside = sqrt(to_sun.x * to_sun.x + to_sun.z * to_sun.z);
+  float look = sqrt(toward.x * toward.x + toward.z * toward.z);
+  float cosine = (toward.x * to_sun.x + toward.z * to_sun.z) / max(aside * look, 1e-6f);
+  cosine = clamp(cosine, -1.0f, 1.0f);
+  float angle = acos(cosine), sine = sqrt(max(1.0f - cosine * cosine, 0.0f));
+  float front = 0.25f * ((3.14159265f - angle) * cosine + sine);
+  float back = 0.25f * (sine - angle * cosine);
+  float up = 0.5f * tilt * max(to_sun.y, 0.0f);
+  return vec3(level * aside * front + up, level * aside * back + up, tilt);
+}
+
 /// Steps of canopy[]: over the shell's height.
 const int kCanopySteps = 16;
 
@@ -149,7 +166,7 @@ struct GrassUniforms {
   uvec4 eye_cell;     ///< numbers of these planes and tiles, wrapped
   vec4 terrain;       ///< first sample's x, z from the eye; distance of samples along x, z, m
   vec4 terrain_size;  ///< samples along x, z; 1 if the eye is in the shell; 1 if rays end at depth
-  vec4 terrain_range;  ///< lowest and highest place, m
+  vec4 terrain_range;  ///< lowest and highest place, height of the eye, m
   vec4 cover;          ///< corner's x, z from the eye; texels a metre along x, z
   vec4 cover_size;     ///< texels along x, z; density of the layer; share of tones that vary
   vec4 blades;         ///< distances between which near blades fade out; both 0: there are none

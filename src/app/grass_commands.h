@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "app/commands.h"
 #include "verdure/grass.h"
 
 namespace verdure::app {
@@ -16,6 +17,9 @@ struct GrassGrowCommand {
 };
 /// Grows a data set into a folder, or lists the species. Throws Error.
 void runGrassGrow(const GrassGrowCommand& command);
+
+/// Figures 2.9 to 2.16 of Habel 2009, with a page that shows them. Throws Error.
+void runGrassFigures(const FiguresCommand& command);
 
 }  // namespace verdure::app
 

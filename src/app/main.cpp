@@ -5,6 +5,8 @@
 #include <memory>
 
 #include "app/commands.h"
+#include "app/grass_commands.h"
+#include "app/option_groups.h"
 #include "base/parallel.h"
 #include "verdure/error.h"
 
@@ -23,161 +25,6 @@ class NestedHelp : public CLI::Formatter {
     return help;
   }
 };
-
-void addLoadOptions(CLI::App& command, LoadOptions& load) {
-  command
-      .add_option("--foliage", load.foliage,
-                  "Material, mesh or node that is foliage (name, * matches anything; repeatable)")
-      ->type_name("NAME")
-      ->allow_extra_args(false);
-  command
-      .add_option("--wood", load.wood, "Material, mesh or node that is not foliage (repeatable)")
-      ->type_name("NAME")
-      ->allow_extra_args(false);
-}
-
-void addBakeOptions(CLI::App& command, BakeParameters& bake, const char* group) {
-  DensityOptions& o = bake.options;
-  command
-      .add_option("--field", bake.field,
-                  "optical-depth, or metaball (Luft et al. 2007; any of its parameters means it)")
-      ->group(group);
-  command.add_option("--rho", o.rho, "Radius of influence of a leaf, m (default: from the crown)")
-      ->group(group);
-  command
-      .add_option("--tau", o.tau,
-                  "Threshold of the surface, in kernel sums (default: from the crown)")
-      ->group(group);
-  command.add_option("--fraction", o.fraction, "Share of the leaves that is used, (0, 1]")
-      ->group(group)
-      ->capture_default_str();
-  command.add_option("--norm", bake.norm, "Norm of distances: 1, 2, inf, or any p >= 1")
-      ->group(group)
-      ->capture_default_str();
-  command.add_option("--grid", o.grid, "Cells of the surface's grid along the longest side")
-      ->group(group)
-      ->capture_default_str();
-  command
-      .add_option("--d-min", o.d_min,
-                  "Field value from which a vertex is darkest (default: from the crown)")
-      ->group(group);
-  command.add_option("--k-min", o.k_min, "Least ambient coefficient, [0, 1]")
-      ->group(group)
-      ->capture_default_str();
-  command
-      .add_option("--exponent", o.exponent,
-                  "How fast it darkens inwards: below 1 slowly, above 1 rapidly")
-      ->group(group)
-      ->capture_default_str();
-  command
-      .add_option(
-          "--normals", bake.normals,
-          "Leaf normals: optical-depth; metaball: surface-point, surface-vertex, ellipsoid; "
-          "keep; in bake bent (default: the field's first)")
-      ->group(group);
-  command.add_option("--blend", o.blend, "0 = the leaf's normals, 1 = the crown's")
-      ->group(group)
-      ->capture_default_str();
-  command.add_option("--seed", o.seed, "Seed of the random fraction")
-      ->group(group)
-      ->capture_default_str();
-  command.add_option("--max-memory", bake.max_memory_mib, "Memory for the grid, MiB")
-      ->group(group)
-      ->capture_default_str();
-}
-
-/// The plant, the picture's size and the camera.
-CLI::Option* addSceneOptions(CLI::App& command, SceneOptions& scene) {
-  CLI::Option* const file =
-      command.add_option("file", scene.input, "Plant: .glb .gltf .obj .fbx .dae .ply");
-  addLoadOptions(command, scene.load);
-  command.add_option("--size", scene.size, "WxH, pixels")->capture_default_str();
-  command
-      .add_option("--camera", scene.camera,
-                  "auto; AZIMUTH,ELEVATION in degrees; or X,Y,Z,TARGETX,TARGETY,TARGETZ in m")
-      ->capture_default_str();
-  command.add_option("--fov", scene.fov_deg, "Vertical field of view, degrees")
-      ->capture_default_str();
-  command.add_flag("--no-ground", scene.no_ground, "Leave the ground out");
-  return file;
-}
-
-void addGroundOptions(CLI::App& command, GroundOptions& ground) {
-  constexpr const char* kGroup = "Ground";
-  command
-      .add_option("--grass", ground.grass,
-                  "Species or folder of grass on the ground; repeat for more layers")
-      ->group(kGroup)
-      ->allow_extra_args(false);
-  command.add_option("--grass-density", ground.density, "Of each layer, by commas, 0 to 1")
-      ->group(kGroup)
-      ->delimiter(',');
-  command
-      .add_option("--grass-cover", ground.cover,
-                  "Picture over the terrain's area, white where a layer grows; one a layer")
-      ->group(kGroup)
-      ->allow_extra_args(false);
-  command.add_option("--grass-seed", ground.grass_seed, "Of species")
-      ->group(kGroup)
-      ->capture_default_str();
-  command.add_option("--grass-slices", ground.slices, "Most slices on a ray, 1 to 256")
-      ->group(kGroup)
-      ->capture_default_str();
-  command
-      .add_option("--terrain", ground.terrain,
-                  "hills, or heights as a PNG of 8 or 16 bits (default: a plane)")
-      ->group(kGroup);
-  command.add_option("--terrain-size", ground.terrain_size, "WxD along x and z, m")
-      ->group(kGroup)
-      ->capture_default_str();
-  command.add_option("--terrain-height", ground.terrain_height, "LOW,HIGH: of black and white, m")
-      ->group(kGroup)
-      ->capture_default_str();
-  command.add_option("--terrain-seed", ground.terrain_seed, "Of hills")
-      ->group(kGroup)
-      ->capture_default_str();
-}
-
-void addWindOptions(CLI::App& command, WindOptions& wind) {
-  command.add_option("--wind", wind.speed,
-                     "Mean speed of the wind, m/s, 0 to 60 (default: 5 at a time, else 0)");
-  command.add_option("--wind-from", wind.from_deg, "Azimuth that it comes from, degrees")
-      ->capture_default_str();
-  command.add_option("--gusts", wind.gusts, "By which share the wind rises and falls, 0 to 1")
-      ->capture_default_str();
-  command.add_option("--time", wind.time, "Show the plant at this time, s");
-}
-
-void addDeviceOptions(CLI::App& command, DeviceOptions& device) {
-  command.add_option("--device", device.device, "Part of the name of the Vulkan device to use");
-  command.add_flag("--validation", device.validation, "Check the use of Vulkan (slow)");
-}
-
-void addDaylightOptions(CLI::App& command, DaylightOptions& daylight) {
-  command
-      .add_option("--sky", daylight.sky,
-                  "preetham; cie:1 (overcast) to cie:15; or a panorama, .exr or .hdr in kcd/m^2")
-      ->capture_default_str();
-  command.add_option("--sun", daylight.sun,
-                     "AZIMUTH,ELEVATION, degrees (azimuth 0: +Z, 90: +X) (default: 85,42)");
-  command.add_option("--date", daylight.date, "Time that says where the sun is: ISO 8601");
-  command.add_option("--place", daylight.place, "LATITUDE,LONGITUDE, degrees, with --date");
-  command.add_option("--turbidity", daylight.turbidity, "Haze of the air: 2 clear to 10 thick")
-      ->capture_default_str();
-}
-
-void addExposureOptions(CLI::App& command, ExposureOptions& exposure) {
-  command
-      .add_option("--exposure", exposure.exposure,
-                  "auto, or an exposure value at ISO 100 (15 in full sun)")
-      ->capture_default_str();
-  command.add_option("--key", exposure.key, "Brightness of the average, 0.09 dark to 0.36 light")
-      ->capture_default_str();
-  command
-      .add_option("--white", exposure.white,
-                  "auto, or the luminance of pure white in averages times the key")
-      ->capture_default_str();
-}
 
 /// Prints one line, whatever bytes the names of files and parts hold.
 int fail(const std::string& message) {
@@ -272,6 +119,24 @@ int run(int argc, char** argv) {
   leaf_bake_app->add_option("--report", leaf_bake.report,
                             "Write every number of the bake, and the basis' errors, as JSON");
   leaf_bake_app->add_flag("--json", leaf_bake.json, "Print the report as JSON");
+
+  CLI::App* grass_app = app.add_subcommand("grass", "Grass as slices and ground");
+  GrassGrowCommand grass_grow;
+  CLI::App* grass_grow_app =
+      grass_app->add_subcommand("grow", "Grow a data set of grass (Habel 2009, chapter 2)");
+  grass_grow_app->add_option("-o,--output", grass_grow.output, "Folder to write");
+  grass_grow_app->add_option("--species", grass_grow.species, "Species, see --list")
+      ->capture_default_str();
+  grass_grow_app->add_option("--seed", grass_grow.grow.seed, "Each seed is other grass")
+      ->capture_default_str();
+  grass_grow_app
+      ->add_option("--texels-per-m", grass_grow.grow.texels_per_m,
+                   "Of slices and ground, 16 to 4096")
+      ->capture_default_str();
+  grass_grow_app->add_option("--kinds", grass_grow.grow.kinds, "Slices, 1 to 64")
+      ->capture_default_str();
+  grass_grow_app->add_flag("--list", grass_grow.list, "List the species");
+  grass_grow_app->add_flag("--json", grass_grow.json, "Print JSON");
 
   InspectCommand inspect;
   CLI::App* inspect_app = app.add_subcommand("inspect", "Say what is in a plant file");
@@ -474,13 +339,13 @@ int run(int argc, char** argv) {
   sky_app->add_option("--report", sky.report, "Folder for the fit's errors and pictures");
   sky_app->add_flag("--json", sky.json, "Print JSON, with the harmonics' weights");
 
-  FiguresCommand luft, gumbau, leaf_figures;
+  FiguresCommand luft, gumbau, leaf_figures, grass_figures;
   CLI::App* figures_app = app.add_subcommand("figures", "Reproduce the figures of a paper");
   const auto add_figures = [figures_app](const char* name, const char* help,
                                          FiguresCommand& figures) {
     CLI::App* paper = figures_app->add_subcommand(name, help);
     paper->add_option("-o,--output", figures.output, "Folder to write")->capture_default_str();
-    paper->add_option("--species", figures.species, "Species of the main tree")
+    paper->add_option("--species", figures.species, "Species of the main plant")
         ->capture_default_str();
     paper->add_option("--size", figures.size, "WxH of each picture")->capture_default_str();
     addDeviceOptions(*paper, figures.device);
@@ -494,6 +359,10 @@ int run(int argc, char** argv) {
   leaf_figures_app
       ->add_option("--samples", leaf_figures.samples, "Paths a pixel of traced pictures")
       ->capture_default_str();
+  grass_figures.species = "meadow";
+  grass_figures.size = "480x360";
+  CLI::App* grass_figures_app =
+      add_figures("grass", "Habel 2009, chapter 2: 2.9 to 2.16", grass_figures);
   SkyReport sky_figures;
   CLI::App* habel_app = figures_app->add_subcommand("sky", "Habel 2009: 5.3 to 5.7");
   habel_app->add_option("-o,--output", sky_figures.folder, "Folder to write")
@@ -539,17 +408,20 @@ int run(int argc, char** argv) {
     return fail(std::string(e.what()) + "; see " + help);
   }
   if (app.get_subcommands().empty())
-    throw Error("command line", "no command is named",
-                "use grow, leaf, inspect, bake, export, render, reference, compare, sky, figures "
-                "or report; see " +
-                    help);
+    throw Error(
+        "command line", "no command is named",
+        "use grow, leaf, grass, inspect, bake, export, render, reference, compare, sky, figures "
+        "or report; see " +
+            help);
   if (*figures_app && figures_app->get_subcommands().empty())
     throw Error("figures", "no paper is named",
-                "use luft, gumbau, leaf or sky; see verdure figures --help");
+                "use luft, gumbau, leaf, grass or sky; see verdure figures --help");
   if (*report_app && report_app->get_subcommands().empty())
     throw Error("report", "nothing is named", "use fidelity or motion; see verdure report --help");
   if (*leaf_app && leaf_app->get_subcommands().empty())
     throw Error("leaf", "nothing is named", "use grow, import or bake; see verdure leaf --help");
+  if (*grass_app && grass_app->get_subcommands().empty())
+    throw Error("grass", "nothing is named", "use grow; see verdure grass --help");
   for (const CLI::Option* option : render_app->get_options())
     if (option->get_group() == kBakeGroup && option->count() > 0) render.bake_again = true;
   for (const char* name : {"--rho", "--tau", "--fraction", "--norm", "--grid", "--d-min", "--k-min",
@@ -567,6 +439,7 @@ int run(int argc, char** argv) {
   if (*leaf_grow_app) runLeafGrow(leaf_grow);
   if (*leaf_import_app) runLeafImport(leaf_import);
   if (*leaf_bake_app) runLeafBake(leaf_bake);
+  if (*grass_grow_app) runGrassGrow(grass_grow);
   if (*inspect_app) runInspect(inspect);
   if (*bake_app) runBake(bake);
   if (*export_app) runExport(wind_files);
@@ -577,6 +450,7 @@ int run(int argc, char** argv) {
   if (*luft_app) runLuftFigures(luft);
   if (*gumbau_app) runGumbauFigures(gumbau);
   if (*leaf_figures_app) runLeafFigures(leaf_figures);
+  if (*grass_figures_app) runGrassFigures(grass_figures);
   if (*habel_app) writeSkyReport(sky_figures);
   if (*fidelity_app) runFidelityReport(fidelity);
   if (*motion_app) runMotionReport(motion_report);

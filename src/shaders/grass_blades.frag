@@ -11,18 +11,19 @@
 #include "grass_place.glsl"
 #include "grass_light.glsl"
 
-layout(location = 0) in vec3 from_eye;
-layout(location = 1) in vec3 in_normal;
-layout(location = 2) in vec4 in_color;
-layout(location = 3) in vec3 place;
-layout(location = 4) in vec3 tint;
+layout(location = 0) centroid in vec3 from_eye;
+layout(location = 1) centroid in vec3 in_normal;
+layout(location = 2) centroid in vec4 in_color;
+layout(location = 3) centroid in vec3 place;
+layout(location = 4) centroid in vec3 tint;
 layout(location = 0) out vec4 out_color;
 
 // A ribbon of a plant near the eye, lit as a texel of a slice is.
 void main() {
   float distance = length(from_eye);
   vec3 direction = from_eye / distance;
-  vec3 normal = normalize(in_normal);
+  // Where a ribbon turns its edge to the eye, normals of its two sides cancel.
+  vec3 normal = dot(in_normal, in_normal) > 1e-6 ? normalize(in_normal) : -direction;
   if (dot(normal, direction) > 0.0) normal = -normal;
   Met met = Met(vec3(0.0), vec3(0.0), 0.0, -1.0, -1.0);
   meetFacing(met, vec4(in_color.rgb, 1.0), facingOf(normal), kTransmission ? in_color.a : 0.0, place.x, distance,

@@ -6,11 +6,12 @@
 #include "grass_blades_set.glsl"
 layout(set = 2, binding = 1, std430) readonly buffer Blades { GrassBlade blades[]; };
 
-layout(location = 0) out vec3 out_from_eye;
-layout(location = 1) out vec3 out_normal;
-layout(location = 2) out vec4 out_color;  // and what is transmitted
-layout(location = 3) out vec3 out_place;  // height in the canopy, density, half of the width
-layout(location = 4) out vec3 out_tint;
+// Centroid: ribbons are thin, and beside of them all that is interpolated may be anything.
+layout(location = 0) centroid out vec3 out_from_eye;
+layout(location = 1) centroid out vec3 out_normal;
+layout(location = 2) centroid out vec4 out_color;  // and what is transmitted
+layout(location = 3) centroid out vec3 out_place;  // height in the canopy, density, half of the width
+layout(location = 4) centroid out vec3 out_tint;
 
 void main() {
   GrassBlade blade = blades[gl_InstanceIndex];

@@ -69,6 +69,7 @@ void meet(inout Met met, vec4 color, vec4 data, vec3 right, vec3 up, vec3 facing
           float w, float t, vec3 tint, float density, Light light) {
   if (color.a <= 0.0) return;
   vec2 n = data.xy / color.a * (behind ? -1.0 : 1.0);
+  n /= max(length(n), 1.0);  // rounded
   vec3 normal = right * n.x + up * n.y + facing * sqrt(max(1.0 - dot(n, n), 0.0));
   float through = kTransmission ? data.z / color.a : 0.0;
   // Where a texel mixes many leaves, so does their light: their mean normal would be none of theirs.

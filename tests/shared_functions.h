@@ -4,6 +4,7 @@
 #include "shared/color.h"
 #include "shared/cook_torrance.h"
 #include "shared/density.h"
+#include "shared/grass_blades.h"
 #include "shared/illumination.h"
 #include "shared/leaf_basis.h"
 #include "shared/leaf_visibility.h"
@@ -38,8 +39,14 @@ struct SharedResults {
   vec4 turned;     // turnedLeaf of a position, x of its normal
   vec4 driven;     // branchAmplitudes, leafTurns
   vec4 windy;      // gustySpeed / 10, motionUv, windUv's x
+  vec4 grass;      // grassBend, plantsStanding, grassHeight
+  vec4 shell;      // shellHeight, 1 / (1 + shellCrossing) both ways, slicePlace
+  vec4 ribbon;     // ribbonPoint, ribbonWidth
+  vec4 facing;     // ribbonNormal, wangPlace
+  vec4 upright;    // meanFacing, sunThroughGrass
+  vec4 terrain;    // drawnPlace / 100, bilinearHeight, rowFarthestFirst / 16
 };
-SHARED_SIZE(SharedResults, 304);
+SHARED_SIZE(SharedResults, 400);
 
 SHARED_FUNCTION SharedResults evaluateShared(vec4 a, vec4 b) {
   vec3 n = normalize(vec3(a.x - 0.5f, a.y - 0.5f, a.z - 0.45f));
@@ -136,6 +143,38 @@ SHARED_FUNCTION SharedResults evaluateShared(vec4 a, vec4 b) {
   vec2 way = branchUv(drive, uvec2(7u, 11u), uint(1.0e5f * b.w), b.z);
   r.windy = vec4(0.1f * gustySpeed(moment, 30.0f * n), way.x, way.y,
                  windUv(moment, vertex.position, int(2.99f * a.w)).x);
+
+  vec2 grass_bend = grassBend(moment, 30.0f * n, vec2(a.x, b.x) * 2.0f - vec2(1.0f));
+  r.grass = vec4(grass_bend.x, grass_bend.y, plantsStanding(a.y, b.y, 0.05f + 0.9f * a.z),
+                 grassHeight(a.w));
+  ShellPath path = shellPath(0.4f, 0.2f + 0.3f * a.x, 0.5f * b.x, 1.0f + a.y);
+  r.shell = vec4(shellHeight(path, b.y), 1.0f / (1.0f + shellCrossing(path, 0.1f, false)),
+                 1.0f / (1.0f + shellCrossing(path, 0.45f, true)),
+                 slicePlace(int(90.0f * a.z), uint(4.0e9f * a.w), 0.6f, 1u) / 100.0f);
+  GrassRibbonPart part;
+  part.size = vec4(0.1f + a.x, 0.3f, 0.01f, 0.05f);
+  part.turn = vec4(0.3f * a.y, 0.1f, 1.2f * b.y, 0.4f);
+  part.root = vec4(0.05f, 0.1f, 0.02f, 0.15f);
+  part.tip = vec4(0.1f, 0.2f, 0.04f, 0.6f);
+  part.kind = uvec4(uint(2.99f * a.w), 1u, 3u, 1u);
+  GrassRibbonPart stalk = part;
+  stalk.kind = uvec4(kRibbonStalk, 0u, 1u, 0u);
+  GrassRibbon ribbon = ribbonOf(part, stalk, vec3(b.x, 0.0f, b.z), uint(4.0e9f * b.w), 1u);
+  r.ribbon = vec4(ribbonPoint(ribbon, a.z), 100.0f * ribbonWidth(ribbon.profile, 0.01f, a.z));
+  r.facing = vec4(ribbonNormal(ribbon, a.z, 2.0f * b.y - 1.0f, v),
+                  wangPlace(uint(1.0e6f * a.x), uint(1.0e6f * a.y), b.z, kBorderOfGround));
+  r.upright = vec4(meanFacing(v, l, a.x),
+                   sunThroughGrass(a.y, l, vec4(0.8f, 0.6f, -0.6f, 0.8f), vec2(0.05f, 0.08f)));
+  TerrainNode node;
+  node.corner = vec2(-32.0f, 16.0f);
+  node.cell_m = 2.0f;
+  node.morph_begin_m = 40.0f;
+  node.morph_end_m = 70.0f;
+  vec2 drawn = drawnPlace(node, uvec2(uint(15.99f * a.x), uint(15.99f * a.y)),
+                          vec3(60.0f * b.x, 3.0f, 60.0f * b.z), vec2(0.0f, 9.0f));
+  TerrainCell cell = terrainCell(100.0f * vec2(b.y, b.w), vec2(20.0f), vec2(3.0f), uvec2(17u, 9u));
+  r.terrain = vec4(drawn.x / 100.0f, drawn.y / 100.0f, bilinearHeight(a, cell.share),
+                   float(rowFarthestFirst(uint(15.99f * a.z), 16u, 20.0f * b.x - 2.0f)) / 16.0f);
   return r;
 }
 

@@ -114,6 +114,7 @@ TEST_F(CommandLineGrass, GrowsADataSet) {
   expectRefused({"grass"}, {"grass: nothing is named; use grow"});
   expectRefused({"grass", "grow"}, {"no folder is named", "-o"});
   expectRefused({"grass", "grow", "--species", "moss", "-o", folder}, {"moss", "meadow"});
+  expectRefused({"figures", "grass", "--species", "moss", "-o", path("figures")}, {"moss"});
   expectRefused({"grass", "grow", "--kinds", "0", "-o", folder}, {"kinds is 0", "1 to 64"});
   expectRefused({"grass", "grow", "--texels-per-m", "8", "-o", folder}, {"texels_per_m is 8"});
 }

@@ -4,6 +4,7 @@
 #include <exception>
 #include <memory>
 
+#include "app/bench_command.h"
 #include "app/commands.h"
 #include "app/grass_commands.h"
 #include "app/option_groups.h"
@@ -395,6 +396,21 @@ int run(int argc, char** argv) {
   motion_app->add_flag("--json", motion_report.json, "Print the numbers as JSON");
   addDeviceOptions(*motion_app, motion_report.device);
 
+  BenchGrassCommand bench_grass;
+  CLI::App* bench_app = app.add_subcommand("bench", "Measure how fast pictures are drawn");
+  CLI::App* bench_grass_app = bench_app->add_subcommand(
+      "grass", "Traced grass against sorted polygons (Habel 2009, table 2.1)");
+  bench_grass_app->add_option("--size", bench_grass.sizes, "WxH of pictures, by commas")
+      ->delimiter(',')
+      ->capture_default_str();
+  bench_grass_app->add_option(
+      "--frames", bench_grass.frames,
+      "Frames of each kind, 1 to 1000 (default: up to 15, as the device is fast)");
+  bench_grass_app->add_option("--species", bench_grass.species, "Species of grass")
+      ->capture_default_str();
+  bench_grass_app->add_flag("--json", bench_grass.json, "Print JSON");
+  addDeviceOptions(*bench_grass_app, bench_grass.device);
+
   for (int i = 1; i < argc; ++i)
     if (*argv[i] == '\0')
       throw Error("argument " + std::to_string(i), "is empty", "give it a value or leave it out");
@@ -410,8 +426,8 @@ int run(int argc, char** argv) {
   if (app.get_subcommands().empty())
     throw Error(
         "command line", "no command is named",
-        "use grow, leaf, grass, inspect, bake, export, render, reference, compare, sky, figures "
-        "or report; see " +
+        "use grow, leaf, grass, inspect, bake, export, render, reference, compare, sky, figures, "
+        "report or bench; see " +
             help);
   if (*figures_app && figures_app->get_subcommands().empty())
     throw Error("figures", "no paper is named",
@@ -422,6 +438,8 @@ int run(int argc, char** argv) {
     throw Error("leaf", "nothing is named", "use grow, import or bake; see verdure leaf --help");
   if (*grass_app && grass_app->get_subcommands().empty())
     throw Error("grass", "nothing is named", "use grow; see verdure grass --help");
+  if (*bench_app && bench_app->get_subcommands().empty())
+    throw Error("bench", "nothing is named", "use grass; see verdure bench --help");
   for (const CLI::Option* option : render_app->get_options())
     if (option->get_group() == kBakeGroup && option->count() > 0) render.bake_again = true;
   for (const char* name : {"--rho", "--tau", "--fraction", "--norm", "--grid", "--d-min", "--k-min",
@@ -454,6 +472,7 @@ int run(int argc, char** argv) {
   if (*habel_app) writeSkyReport(sky_figures);
   if (*fidelity_app) runFidelityReport(fidelity);
   if (*motion_app) runMotionReport(motion_report);
+  if (*bench_grass_app) runBenchGrass(bench_grass);
   return 0;
 }
 

@@ -38,7 +38,7 @@ void HalfTexture::record(const vk::raii::CommandBuffer& commands) const {
       vk::BufferImageCopy{.imageSubresource = {.aspectMask = kColorAspect, .layerCount = 1},
                           .imageExtent = {texture_.request.width, texture_.request.height, 1}});
   gpu::imageBarrier(commands, *texture_.image, kColorAspect, gpu::Use::kTransferTarget,
-                    gpu::Use::kFragmentSampled);
+                    gpu::Use::kDrawSampled);
 }
 
 }  // namespace verdure

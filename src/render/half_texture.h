@@ -17,7 +17,7 @@ class HalfTexture {
   int height() const { return static_cast<int>(texture_.request.height); }
   /// Values beyond what halves hold are cut. Not while commands of the last frame run.
   void set(int x, int y, const glm::vec3& color);
-  /// Copies what was set and leaves the texture as kFragmentSampled.
+  /// Copies what was set and leaves the texture as kDrawSampled.
   void record(const vk::raii::CommandBuffer& commands) const;
   const gpu::Texture& texture() const { return texture_; }
 

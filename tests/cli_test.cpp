@@ -385,13 +385,13 @@ TEST_F(CommandLine, RefusesWhatCannotGrow) {
 }
 
 TEST_F(CommandLine, RefusesWordsItDoesNotKnow) {
-  expectRefused({}, {"no command is named; use grow, leaf, inspect, bake"});
+  expectRefused({}, {"no command is named; use grow, leaf, grass, inspect, bake"});
   expectRefused({"prune"}, {"prune", "verdure --help"});
   expectRefused({"--frobnicate"}, {"--frobnicate"});
   expectRefused({"inspect", "a.glb", "--frobnicate"}, {"--frobnicate", "verdure inspect --help"});
   expectRefused({"inspect"}, {"file is required"});
   expectRefused({"bake", "a.glb"}, {"--output is required"});
-  expectRefused({"figures"}, {"no paper is named; use luft, gumbau, leaf or sky"});
+  expectRefused({"figures"}, {"no paper is named; use luft, gumbau, leaf, grass or sky"});
   expectRefused({"--threads", "-1", "inspect", "a.glb"}, {"--threads"});
 }
 

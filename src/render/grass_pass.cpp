@@ -33,7 +33,7 @@ std::pair<std::int64_t, double> cellOf(double x, double step) {
 
 TerrainLevels levelsOf(const Terrain& terrain, const glm::vec2& range, float radius) {
   TerrainLevels levels;
-  levels.finest_m = std::max(0.5f * std::min(terrain.spacing_m.x, terrain.spacing_m.y), 0.25f);
+  levels.finest_m = std::max(std::min(terrain.spacing_m.x, terrain.spacing_m.y), 0.5f);
   levels.cells = static_cast<int>(kTerrainCells);
   levels.radius_m = std::min(radius, 0x1p19f * levels.finest_m);
   levels.heights = range;
@@ -50,6 +50,7 @@ std::vector<std::vector<gpu::MipLevel>> plainLayers() {
 GpuTerrain::GpuTerrain(const gpu::Device& device, PackedTerrain packed,
                        const gpu::SetLayout& layout)
     : terrain_(std::move(packed.terrain)), range_(heightRange(terrain_)) {
+  level_ = range_.x == range_.y;
   // Shells rise above the ground, by more where that is curved: terrain.vert.
   for (const PackedGrass& layer : packed.layers)
     range_.y = std::max(range_.y, heightRange(terrain_).y + 2.0f * layer.uniforms.shell.x);
@@ -127,12 +128,13 @@ GrassPass::GrassPass(const gpu::Device& device, vk::DescriptorSetLayout frame_se
           gpu::makeSampler(device, vk::Filter::eNearest, vk::SamplerAddressMode::eClampToEdge)) {}
 
 gpu::Constants GrassPass::constantsOf(const GpuTerrain& terrain, std::size_t layer,
-                                      const Terms& terms, const DrawKind& kind) const {
+                                      const Terms& terms, const DrawKind& kind,
+                                      bool from_eye) const {
   DrawKind grass = kind;
   grass.transmission = terms.transmission;
   gpu::Constants constants = termConstants(terms, grass);
   constants.insert(constants.end(), {terrain.layers_[layer].grass, layer == 0, kTerrainCells,
-                                     terrain.layers_[layer].packed.medium});
+                                     terrain.layers_[layer].packed.medium, from_eye});
   return constants;
 }
 
@@ -177,9 +179,9 @@ void GrassPass::prepare(GpuTerrain& terrain, const View& view, const gpu::Textur
     shared::GrassUniforms u = layer.packed.uniforms;
     const Terrain& t = terrain.terrain_;
     u.terrain = glm::vec4(t.corner - eye_place, t.spacing_m);
-    const bool in_shell = eye.y > ground && eye.y < ground + u.placing.y;
-    u.terrain_size = glm::vec4(t.width, t.height, in_shell, layer.packed.ends_at_depth);
-    u.terrain_range = glm::vec4(terrain.range_, eye.y, 0.0f);
+    layer.holds_eye = layer.grass && eye.y > ground && eye.y < ground + u.placing.y;
+    u.terrain_size = glm::vec4(t.width, t.height, layer.holds_eye, layer.packed.ends_at_depth);
+    u.terrain_range = glm::vec4(terrain.range_, eye.y, terrain.level_);
     const CoverMap& cover = layer.packed.cover;
     u.cover =
         glm::vec4(cover.corner - eye_place, glm::vec2(cover.width, cover.height) / cover.size_m);
@@ -202,26 +204,30 @@ void GrassPass::prepare(GpuTerrain& terrain, const View& view, const gpu::Textur
       u.scroll = glm::vec4(u.moment.drift.x, u.moment.drift.y, ripples.drift.x, ripples.drift.y);
     }
     std::memcpy(layer.uniforms.memory.mapped(), &u, sizeof(u));
-    gpu::Constants constants = constantsOf(terrain, i, view.terms, kind);
-    if (pipelines_.contains(constants)) continue;
-    vk::raii::Pipeline pipeline = gpu::makeGraphicsPipeline(
-        *device_,
-        {.vertex = kVertex,
-         .fragment = kFragment,
-         .constants = constants,
-         .layout = *layout_,
-         .bindings = {{.binding = 0,
-                       .stride = sizeof(shared::TerrainNode),
-                       .inputRate = vk::VertexInputRate::eInstance}},
-         .attributes =
-             {{.location = 0, .binding = 0, .format = vk::Format::eR32G32B32A32Sfloat},
-              {.location = 1, .binding = 0, .format = vk::Format::eR32Sfloat, .offset = 16}},
-         .color = FrameLayout::kColor,
-         .depth = FrameLayout::kDepth,
-         .samples = FrameLayout::kSamples,
-         .blend = gpu::Blend::kOver});
-    pipelines_.emplace(std::move(constants), std::move(pipeline));
+    addPipeline(constantsOf(terrain, i, view.terms, kind, false));
+    if (layer.holds_eye) addPipeline(constantsOf(terrain, i, view.terms, kind, true));
   }
+}
+
+void GrassPass::addPipeline(gpu::Constants constants) {
+  if (pipelines_.contains(constants)) return;
+  vk::raii::Pipeline pipeline = gpu::makeGraphicsPipeline(
+      *device_,
+      {.vertex = kVertex,
+       .fragment = kFragment,
+       .constants = constants,
+       .layout = *layout_,
+       .bindings = {{.binding = 0,
+                     .stride = sizeof(shared::TerrainNode),
+                     .inputRate = vk::VertexInputRate::eInstance}},
+       .attributes =
+           {{.location = 0, .binding = 0, .format = vk::Format::eR32G32B32A32Sfloat},
+            {.location = 1, .binding = 0, .format = vk::Format::eR32Sfloat, .offset = 16}},
+       .color = FrameLayout::kColor,
+       .depth = FrameLayout::kDepth,
+       .samples = FrameLayout::kSamples,
+       .blend = gpu::Blend::kOver});
+  pipelines_.emplace(std::move(constants), std::move(pipeline));
 }
 
 void GrassPass::recordDepthRange(const vk::raii::CommandBuffer& commands,
@@ -245,9 +251,14 @@ void GrassPass::record(const vk::raii::CommandBuffer& commands, vk::DescriptorSe
   commands.bindVertexBuffers(0, {*terrain.nodes_.buffer}, {0});
   for (std::size_t i = 0; i < terrain.layers_.size(); ++i) {
     commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
-                          *pipelines_.at(constantsOf(terrain, i, terms, kind)));
+                          *pipelines_.at(constantsOf(terrain, i, terms, kind, false)));
     commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout_, 0,
                                 {frame_set, **terrain.layers_[i].set}, nullptr);
+    commands.draw(6 * kTerrainCells * kTerrainCells, nodes_, 0, 0);
+    if (!terrain.layers_[i].holds_eye) continue;
+    // The shell's upper side is not seen by rays that go down from within it.
+    commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
+                          *pipelines_.at(constantsOf(terrain, i, terms, kind, true)));
     commands.draw(6 * kTerrainCells * kTerrainCells, nodes_, 0, 0);
   }
 }

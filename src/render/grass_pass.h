@@ -31,14 +31,16 @@ class GpuTerrain {
   friend class GrassBlades;
   friend class GrassBillboards;
   struct Layer {
-    PackedGrass packed;  ///< without its textures' bytes
-    bool grass = false;  ///< else it is bare ground
+    PackedGrass packed;      ///< without its textures' bytes
+    bool grass = false;      ///< else it is bare ground
+    bool holds_eye = false;  ///< the eye is in its shell
     std::optional<gpu::Texture> slice_colors, slice_data, ground_colors, ground_data, far_colors;
     gpu::Buffer cover, uniforms;
     std::optional<gpu::DescriptorSet> set;
   };
   Terrain terrain_;
   glm::vec2 range_{0.0f};  ///< lowest and highest place
+  bool level_ = false;
   gpu::Buffer heights_;
   std::vector<vk::raii::Sampler> samplers_;
   std::vector<Layer> layers_;
@@ -63,7 +65,8 @@ class GrassPass {
 
  private:
   gpu::Constants constantsOf(const GpuTerrain& terrain, std::size_t layer, const Terms& terms,
-                             const DrawKind& kind) const;
+                             const DrawKind& kind, bool from_eye) const;
+  void addPipeline(gpu::Constants constants);
 
   const gpu::Device* device_;
   gpu::SetLayout set_layout_, depth_layout_;

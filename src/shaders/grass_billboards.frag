@@ -36,7 +36,7 @@ void main() {
   vec4 data = unpackGrassData(textureLod(slice_data, uv, lod));
   thin(color, data, density, 0.0, lod);
   if (color.a <= 0.002) discard;
-  Met met = Met(vec3(0.0), vec3(0.0), 0.0, -1.0, -1.0);
+  Met met = kNothingMet;
   bool behind = across > 0.0;
   meet(met, color, data, right, up, behind ? -toward : toward, behind, picture.y, t, tint.rgb, density,
        lightAt(from_eye, sideways.rgb, direction));

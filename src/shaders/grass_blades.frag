@@ -25,8 +25,8 @@ void main() {
   // Where a ribbon turns its edge to the eye, normals of its two sides cancel.
   vec3 normal = dot(in_normal, in_normal) > 1e-6 ? normalize(in_normal) : -direction;
   if (dot(normal, direction) > 0.0) normal = -normal;
-  Met met = Met(vec3(0.0), vec3(0.0), 0.0, -1.0, -1.0);
-  meetFacing(met, vec4(in_color.rgb, 1.0), facingOf(normal), kTransmission ? in_color.a : 0.0, place.x, distance,
+  Met met = kNothingMet;
+  meetFacing(met, vec4(clamp(in_color.rgb, 0.0, 1.0), 1.0), facingOf(normal), kTransmission ? in_color.a : 0.0, place.x, distance,
              tint, place.y, lightAt(from_eye, sidewaysLight(direction), direction));
   vec3 lit = met.color + met.sunlit * frame.sun_light.rgb * shadowAt(from_eye);
   float haze = hazeShare(distance, frame.ground.z);

@@ -19,7 +19,7 @@ void main() {
   float t = length(from_eye);
   vec3 direction = from_eye / t;
   vec2 at = vec2(dot(grass.rows.xy, from_eye.xz), dot(grass.rows.zw, from_eye.xz));
-  Met met = Met(vec3(0.0), vec3(0.0), 0.0, -1.0, -1.0);
+  Met met = kNothingMet;
   meetLevel(met, grass.eye.zw + at, t, direction, 0.0, 1.0, terrainNormal(from_eye.xz), 0.0,
             clamp(coverAt(from_eye.xz), 0.0, 1.0), 0.0, grassTint(frame.eye.xz + from_eye.xz, t),
             lightAt(from_eye, sidewaysLight(direction), direction));

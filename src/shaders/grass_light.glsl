@@ -17,7 +17,9 @@ struct Met {
   float alpha;
   float depth_t; // where alpha passed the threshold
   float first_t; // where anything was met
+  float sum_t;   // the mean place, times alpha
 };
+const Met kNothingMet = Met(vec3(0.0), vec3(0.0), 0.0, -1.0, -1.0, 0.0);
 
 /// What packGrassData() packed.
 vec4 unpackGrassData(vec4 texel) {
@@ -59,6 +61,7 @@ void meetFacing(inout Met met, vec4 color, vec3 faces, float through, float w, f
     }
   }
   met.alpha += share * color.a;
+  met.sum_t += share * color.a * t;
   if (met.first_t < 0.0) met.first_t = t;
   if (met.depth_t < 0.0 && met.alpha > grass.limits.y) met.depth_t = t;
 }
@@ -73,7 +76,7 @@ void meet(inout Met met, vec4 color, vec4 data, vec3 right, vec3 up, vec3 facing
   vec3 normal = right * n.x + up * n.y + facing * sqrt(max(1.0 - dot(n, n), 0.0));
   float through = kTransmission ? data.z / color.a : 0.0;
   // Where a texel mixes many leaves, so does their light: their mean normal would be none of theirs.
-  float many = smoothstep(0.0, 3.0, sliceLod(t, 1.0));
+  float many = smoothstep(1.0, 4.0, sliceLod(t, 1.0));
   meetFacing(met, color, mix(facingOf(normal), light.faces, many), through, w, t, tint, density, light);
 }
 
@@ -83,6 +86,7 @@ void addBehind(inout Met met, Met behind) {
   met.sunlit += share * behind.sunlit;
   met.color += share * behind.color;
   met.alpha += share * behind.alpha;
+  met.sum_t += share * behind.sum_t;
   if (met.first_t < 0.0) met.first_t = behind.first_t;
   if (met.depth_t < 0.0 && met.alpha > grass.limits.y) met.depth_t = behind.first_t;
 }

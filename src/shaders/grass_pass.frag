@@ -17,6 +17,7 @@
 // slices that it may; what is still open then is filled by the opaque slice.
 layout(constant_id = 20) const bool kGrass = true;
 layout(constant_id = 21) const bool kBase = true;  // the layer that covers the ground
+layout(constant_id = 24) const bool kFromEye = false;  // rays that never leave the shell they begin in
 layout(constant_id = 23) const bool kMedium = true;  // slices finer than pixels are a medium
 
 layout(location = 0) centroid in vec3 from_eye;
@@ -159,6 +160,7 @@ void traceMedium(inout Met met, GrassRay ray, float from_t, inout float end_t) {
       float fill = 1.0 / met.alpha;
       met.sunlit *= fill;
       met.color *= fill;
+      met.sum_t *= fill;
       met.alpha = 1.0;
     }
     end_t = kFarAway;  // it did not come there
@@ -235,6 +237,10 @@ struct ShellEnd {
   bool above;
 };
 ShellEnd endOfShell(vec3 start, vec3 direction, float w_start, float t_start) {
+  if (grass.terrain_range.w > 0.0) {
+    if (direction.y < 0.0) return ShellEnd(max(w_start / -direction.y, 1e-4), true, false);
+    return ShellEnd((grass.placing.y - w_start) / max(direction.y, 1e-5) + 1e-4, false, true);
+  }
   float cell = max(min(grass.terrain.z, grass.terrain.w), 0.02 * t_start);
   // What is drawn may lie above the shell: a ray that leaves the one and not the other comes back.
   float top = 1.5 * max(grass.placing.y, w_start);
@@ -259,6 +265,7 @@ ShellEnd endOfShell(vec3 start, vec3 direction, float w_start, float t_start) {
       end.t = t;
     }
   }
+  if (!end.ground && !end.above) end.ground = w < w_start;  // so far away that it does not matter
   end.t = max(end.t, 1e-4);
   return end;
 }
@@ -280,9 +287,9 @@ void main() {
 
   float height = grass.shell.x, top = grass.placing.y;
   vec3 start = from_eye;
-  if (!gl_FrontFacing) {
+  if (kFromEye || !gl_FrontFacing) {
     // The shell's upper side from below: the ray began at the eye, if that is in the shell.
-    if (grass.terrain_size.z == 0.0) discard;
+    if (grass.terrain_size.z == 0.0 || kFromEye != gl_FrontFacing) discard;
     start = vec3(0.0);
     t_start = 0.0;
   }
@@ -316,6 +323,7 @@ void main() {
 
   float rate = abs(ray.d.x) / grass.shell.y + abs(ray.d.y) / grass.shell.z;
   ShellEnd shell_end = endOfShell(start, direction, w_start, t_start);
+  if (kFromEye && !shell_end.ground) discard;
   float reach = shell_end.t;
   ray.reach = reach;
   ray.path = shellPath(w_start, heightAbove(start + direction * (0.5 * reach)),
@@ -333,7 +341,7 @@ void main() {
 
   ray.light = lightAt(start, sidewaysLight(direction), direction);
 
-  Met met = Met(vec3(0.0), vec3(0.0), 0.0, -1.0, -1.0);
+  Met met = kNothingMet;
   // Slices in a pixel, one behind the other: many look like a medium, and so does what is behind as
   // many as may be met.
   float fall = max(-ray.path.slope, 1e-4);
@@ -346,7 +354,7 @@ void main() {
   float mean_end_t = end_t;
   if (kMedium && ray.density > 0.0 && (open || medium > 0.0)) {
     if (medium > 0.0) {
-      mean = Met(vec3(0.0), vec3(0.0), 0.0, -1.0, -1.0);
+      mean = kNothingMet;
       came_t = 0.0;
     }
     traceMedium(mean, ray, came_t, mean_end_t);
@@ -359,7 +367,7 @@ void main() {
   }
   if (kBase && end_t == ground_t && ground_t < kFarAway) {
     vec3 foot = start + direction * ground_t;
-    Met ground = Met(vec3(0.0), vec3(0.0), 0.0, -1.0, -1.0);
+    Met ground = kNothingMet;
     meetLevel(ground, ray, ground_t, 0.0, 1.0, vec2(0.0), terrainNormal(foot.xz), 0.0);
     if (at_ground) addBehind(met, ground);
     if (mean_end_t == ground_t) addBehind(mean, ground);
@@ -367,12 +375,13 @@ void main() {
   if (medium > 0.0) {
     met.sunlit = mix(met.sunlit, mean.sunlit, medium);
     met.color = mix(met.color, mean.color, medium);
+    met.sum_t = mix(met.sum_t, mean.sum_t, medium);
     met.alpha = mix(met.alpha, mean.alpha, medium);
     if (met.depth_t < 0.0) met.depth_t = mean.depth_t;
     if (met.first_t < 0.0) met.first_t = mean.first_t;
   }
   if (met.alpha <= 0.002) discard;
   float seen_t = met.depth_t >= 0.0 ? met.depth_t : met.first_t >= 0.0 ? met.first_t : t_start;
-  vec3 lit = met.color + met.sunlit * frame.sun_light.rgb * shadowAt(direction * seen_t);
+  vec3 lit = met.color + met.sunlit * frame.sun_light.rgb * shadowAt(direction * (met.sum_t / met.alpha));
   write(lit, min(met.alpha, 1.0), direction, seen_t);
 }

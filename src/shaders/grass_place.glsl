@@ -33,6 +33,7 @@ vec2 groundPlace(vec2 past_tile) {
 }
 
 vec3 terrainNormal(vec2 place) {
+  if (grass.terrain_range.w > 0.0) return vec3(0.0, 1.0, 0.0);
   vec2 step = grass.terrain.zw;
   float x = groundHeight(place + vec2(step.x, 0.0)) - groundHeight(place - vec2(step.x, 0.0));
   float z = groundHeight(place + vec2(0.0, step.y)) - groundHeight(place - vec2(0.0, step.y));
@@ -41,6 +42,7 @@ vec3 terrainNormal(vec2 place) {
 
 /// Noise of wind in [-1, 1] at two sizes, that goes with it.
 vec2 windNoise(vec3 place) {
+  if (grass.moment.toward.w == 0.0) return vec2(0.0);
   vec2 broad = place.xz / kWindNoise_m - grass.scroll.xy;
   vec2 fine = place.xz / kWindRipple_m - grass.scroll.zw;
   vec2 waves = vec2(textureLod(ground_noise, broad, 0.0).r, textureLod(ground_noise, broad.yx + 0.37, 0.0).r);
@@ -50,6 +52,7 @@ vec2 windNoise(vec3 place) {
 
 /// Patches of tones at x, z, seen from a distance, m.
 vec3 grassTint(vec2 place, float distance) {
+  if (grass.cover_size.w == 0.0) return vec3(1.0);
   GroundLookup tones = groundLookup(place, frame.ground.w);
   float far_lod = log2(max(distance * grass.texels.w * 50.0, 1.0));
   vec3 tint = groundTone(textureLod(ground_noise, tones.fine, far_lod - 2.0).r,

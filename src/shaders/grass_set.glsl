@@ -12,6 +12,7 @@ layout(set = 1, binding = 8) uniform sampler2DArray far_colors;   // kFarLevels 
 
 /// The ground's height at x, z from the eye.
 float groundHeight(vec2 from_eye) {
+  if (grass.terrain_range.w > 0.0) return grass.terrain_range.x;
   uvec2 size = uvec2(grass.terrain_size.xy);
   TerrainCell at = terrainCell(from_eye, grass.terrain.xy, grass.terrain.zw, size);
   uint first = at.sample_before.y * size.x + at.sample_before.x, below = first + size.x;

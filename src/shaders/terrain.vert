@@ -5,6 +5,7 @@
 
 // A node of the terrain, or of the shell of grass over it.
 layout(constant_id = 20) const bool kGrass = true;
+layout(constant_id = 24) const bool kFromEye = false;  // the ground under an eye that is in the shell
 layout(constant_id = 22) const uint kCells = 16u;  // along a node
 layout(location = 0) in vec4 corner_cell_begin;    // of TerrainNode
 layout(location = 1) in float end;
@@ -18,7 +19,7 @@ void main() {
   vec2 drawn = drawnPlace(node, index, eye, grass.terrain_range.xy);
   vec2 place = drawn - eye.xz;
   float height = groundHeight(place);
-  if (kGrass) {
+  if (kGrass && !kFromEye) {
     // Where the ground falls away between vertices, the shell must not be cut off.
     float cell = drawnCell(node, drawn, eye, grass.terrain_range.xy);
     vec2 x = vec2(cell, 0.0), z = vec2(0.0, cell);

@@ -131,9 +131,9 @@ SHARED_FUNCTION float shellCrossing(ShellPath path, float height, bool rising) {
 
 /// What slices look like from afar: pictures of so many columns and rows, each in so many levels;
 /// a level's columns are mixed twice as widely as the last one's, its rows are not.
-const int kFarColumns = 64;
+const int kFarColumns = 256;
 const int kFarRows = 64;
-const int kFarLevels = 6;
+const int kFarLevels = 8;
 
 /// How leaves that stand upright and face all ways face the sun: means, over those that a looker
 /// sees, of the cosines on the side that he sees and on the other, the phase functions of a matt
@@ -153,7 +153,7 @@ SHARED_FUNCTION vec3 meanFacing(vec3 toward, vec3 to_sun, float tilt) {
 }
 
 /// Steps of canopy[]: over the shell's height.
-const int kCanopySteps = 16;
+const int kCanopySteps = 32;
 
 /// One layer of grass for the shaders: std140. Places are relative to the eye, so that nothing is
 /// lost far from the origin.
@@ -166,7 +166,7 @@ struct GrassUniforms {
   uvec4 eye_cell;     ///< numbers of these planes and tiles, wrapped
   vec4 terrain;       ///< first sample's x, z from the eye; distance of samples along x, z, m
   vec4 terrain_size;  ///< samples along x, z; 1 if the eye is in the shell; 1 if rays end at depth
-  vec4 terrain_range;  ///< lowest and highest place, height of the eye, m
+  vec4 terrain_range;  ///< lowest and highest place, height of the eye, m; 1 if all is level
   vec4 cover;          ///< corner's x, z from the eye; texels a metre along x, z
   vec4 cover_size;     ///< texels along x, z; density of the layer; share of tones that vary
   vec4 blades;         ///< distances between which near blades fade out; both 0: there are none
@@ -178,10 +178,10 @@ struct GrassUniforms {
   /// At even heights: optical depth of the slices above, for one slice a metre along the ground
   /// (times metres along the ground); how much of the sky is seen. z: the height in shares of the
   /// shell's where that depth has grown to a share of all of which the root is even.
-  vec4 canopy[17];
+  vec4 canopy[33];
   MotionMoment moment;
 };
-SHARED_SIZE(GrassUniforms, 624);
+SHARED_SIZE(GrassUniforms, 880);
 
 /// Side of the noise of wind, m, at its two sizes.
 const float kWindNoise_m = 37.0f;

@@ -370,7 +370,7 @@ class Walk {
     const Plant tree = ballTree(80, 0.5f);
     const Scene scene = avenue(tree);
     scene_.emplace(device_, packScene(scene), *drawer_.layout().material_set,
-                   drawer_.transferLayout(), drawer_.motionLayouts());
+                   drawer_.transferLayout(), drawer_.motionLayouts(), drawer_.grassLayout());
   }
   ~Walk() { EXPECT_EQ(device_.validationMessages(), 0); }
 

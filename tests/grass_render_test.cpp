@@ -72,7 +72,7 @@ TEST_F(GrassRender, AgreesWithBruteForce) {
 }
 
 // Rays that come down on the ground without having been above the shell.
-TEST_F(GrassRender, DISABLED_AgreesInsideOfTheShell) {
+TEST_F(GrassRender, AgreesInsideOfTheShell) {
   const Camera inside = lookingFrom({2.5f, 0.12f, 3.0f}, {0.4f, 0.1f, -0.8f}, 0.9f);
   expectAgreement("inside", compare(plainLayer(blocky()), plainView(inside)));
 }

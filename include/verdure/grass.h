@@ -46,8 +46,9 @@ enum class RibbonProfile : std::uint32_t {
 /// of ribbons on a stalk from the stalk's end.
 struct GrassPart {
   RibbonProfile profile = RibbonProfile::kBlade;
-  bool on_stalk = false;  ///< at the end of the plant's first ribbon, which is part 0; else on the ground
-  int count = 1;          ///< ribbons, evenly around
+  bool on_stalk =
+      false;      ///< at the end of the plant's first ribbon, which is part 0; else on the ground
+  int count = 1;  ///< ribbons, evenly around
   float length_m = 0.1f, length_spread = 0.3f;  ///< spread: +- this share, uniform
   float width_m = 0.004f;
   float lean = 0.2f, lean_spread = 0.15f;  ///< where it begins, radians
@@ -85,9 +86,9 @@ const std::vector<std::string>& grassSpeciesNames();
 /// A species as pictures: what is traced.
 struct GrassSet {
   std::string name;
-  float height_m = 0.0f;        ///< h, above 0
-  glm::vec2 spacing_m{0.0f};    ///< d_u, d_v: of slices across u and across v, above 0
-  float tile_m = 0.0f;          ///< side of a Wang tile, above 0
+  float height_m = 0.0f;      ///< h, above 0
+  glm::vec2 spacing_m{0.0f};  ///< d_u, d_v: of slices across u and across v, above 0
+  float tile_m = 0.0f;        ///< side of a Wang tile, above 0
   /// Kinds of slices, all of one size: four Wang tiles wide, in the order of wangColumn()
   /// (shared/grass.h), so that they repeat; height_m high. Row 0 is the shell's top.
   std::vector<GrassMap> slices;
@@ -95,7 +96,8 @@ struct GrassSet {
   /// 4 x 4 Wang tiles, u to the right and v down, alpha 1: the ground seen from above with the
   /// lower half of the plants. The normals' right and up are u and -v.
   GrassMap ground;
-  GrassMap middle;  ///< the same, without the ground: what grows above half of the height; may be empty
+  GrassMap
+      middle;  ///< the same, without the ground: what grows above half of the height; may be empty
   GrassSpecies species;  ///< what it was made of; without plants where pictures were given
 };
 
@@ -105,10 +107,10 @@ struct GrassGrowOptions {
   int kinds = 8;                ///< of slices, [1, 64]
 };
 
-/// Grows the plants of all slabs and draws them. Slabs across u and slabs across v stand in the same
-/// place, so each is grown at pi / 4 of the density: over all directions, rays then meet as much as
-/// in the grass itself. Deterministic for any number of threads. Throws Error for numbers out of
-/// range.
+/// Grows the plants of all slabs and draws them. Slabs across u and slabs across v stand in the
+/// same place, so each is grown at pi / 4 of the density: over all directions, rays then meet as
+/// much as in the grass itself. Deterministic for any number of threads. Throws Error for numbers
+/// out of range.
 GrassSet growGrass(const GrassSpecies& species, const GrassGrowOptions& options = {});
 
 /// Throws Error, naming `where`, unless all pictures have the sizes and values that they should.
@@ -121,8 +123,8 @@ std::vector<GrassMap> grassMips(const GrassMap& map);
 /// Writes grass.json and its pictures (docs/grass.md has the format): all or none of them.
 void saveGrass(const GrassSet& set, const std::filesystem::path& folder);
 
-/// Reads a folder or its grass.json. Throws Error: one line for slices of different sizes or without
-/// alpha, spacing or height of zero, missing files, unknown keys.
+/// Reads a folder or its grass.json. Throws Error: one line for slices of different sizes or
+/// without alpha, spacing or height of zero, missing files, unknown keys.
 GrassSet loadGrass(const std::filesystem::path& path);
 
 }  // namespace verdure

@@ -44,7 +44,7 @@ struct GrassLayer {
   bool mirrored = false;            ///< v runs against z
   int most_slices = 32;             ///< on a ray, [1, 256]; what is open behind them is filled
   float scatter = 0.6f;  ///< how far slices are off even distances, in shares of them, [0, 0.9]
-  bool blades = true;     ///< plants near the eye are drawn one by one, as ribbons
+  bool blades = true;    ///< plants near the eye are drawn one by one, as ribbons
   bool middle = true;    ///< the level slice, where the set has one
   /// Rays end at what stands in the grass; else it is hidden by whole pixels, where they are more
   /// than about half covered.
@@ -62,8 +62,8 @@ struct Scene {
   std::vector<SceneItem> items;
   bool ground = true;  ///< textured ground plane at y = ground_height
   float ground_height = 0.0f;
-  const Terrain* terrain = nullptr;  ///< takes the plane's place
-  std::vector<GrassLayer> grass;     ///< on either; the first covers it, the others add to it
+  const Terrain* terrain = nullptr;    ///< takes the plane's place
+  std::vector<GrassLayer> grass = {};  ///< on either; the first covers it, the others add to it
 };
 
 /// A camera that shows the whole scene from `azimuth` (as the sun's) and `elevation` (radians),

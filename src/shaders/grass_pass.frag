@@ -273,6 +273,9 @@ ShellEnd endOfShell(vec3 start, vec3 direction, float w_start, float t_start) {
 void main() {
   float t_start = length(from_eye);
   vec3 direction = from_eye / t_start;
+  // At the horizon what is interpolated may lie behind the eye.
+  vec3 middle = pixelDirection();
+  if (dot(direction, middle) < 1.0 - 4.0 * grass.texels.w * grass.texels.w) direction = middle;
   vec3 painted = vec3(0.0);
   if (!kGrass) painted = paintedGround(frame.eye.xz + from_eye.xz);
   if (!kGrass) {

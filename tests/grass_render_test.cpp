@@ -5,6 +5,7 @@
 
 #include "base/random.h"
 #include "grass_scenes.h"
+#include "scene/camera.h"
 #include "verdure/compare.h"
 
 namespace verdure {
@@ -209,6 +210,44 @@ TEST_F(GrassRender, TrunkIsHiddenAtItsFootOnly) {
     EXPECT_GT(hidden(0.02f), 0.8f) << ends;
     EXPECT_EQ(hidden(0.4f), 0.0f) << ends;
   }
+}
+
+// The ground's points, found along each ray, were where the last camera saw them.
+TEST_F(GrassRender, MotionVectorsFollowATerrain) {
+  const Terrain hills = growTerrain(
+      {.seed = 3, .size_m = glm::vec2(40.0f), .relief_m = 5.0f, .hill_m = 15.0f, .samples = 65});
+  View view = plainView(lookingFrom({1.0f, 3.0f, 9.0f}, {0.1f, -0.3f, -1.0f}, 0.8f));
+  const Camera was = lookingFrom({1.3f, 2.9f, 9.4f}, {0.05f, -0.3f, -1.0f}, 0.8f);
+  view.last = {was, view.wind, view.seconds};
+  Scene scene;
+  scene.terrain = &hills;
+  Renderer renderer({"", true});
+  renderer.setScene(scene);
+  const Frame frame = renderer.render(view);
+  const glm::vec2 size(view.width, view.height);
+  const CameraRays rays = cameraRays(view.camera, size.x / size.y);
+  int checked = 0;
+  float longest = 0.0f;
+  for (int y = view.height / 3; y < view.height; y += 7)
+    for (int x = 3; x < view.width; x += 8) {
+      const glm::vec2 at = glm::vec2(x, y) + 0.5f, place = at / size * 2.0f - 1.0f;
+      const glm::vec3 ray =
+          glm::normalize(rays.forward + place.x * rays.right + place.y * rays.down);
+      float t = 0.0f;
+      glm::vec3 p = rays.eye;
+      while (t < 15.0f && p.y > hills.heightAt({p.x, p.z})) p = rays.eye + ray * (t += 0.005f);
+      if (t >= 15.0f) continue;
+      const glm::vec4 clip = clipFromWorld(was, size.x / size.y) * glm::vec4(p, 1.0f);
+      const glm::vec2 way = at - (glm::vec2(clip) / clip.w * 0.5f + 0.5f) * size;
+      const glm::vec2 got = frame.motion[static_cast<std::size_t>(y * view.width + x)];
+      EXPECT_NEAR(got.x, way.x, 0.1f) << x << " " << y;
+      EXPECT_NEAR(got.y, way.y, 0.1f) << x << " " << y;
+      longest = std::max(longest, glm::length(way));
+      ++checked;
+    }
+  EXPECT_GT(checked, 100);
+  EXPECT_GT(longest, 5.0f);
+  EXPECT_EQ(renderer.validationMessages(), 0);
 }
 
 TEST_F(GrassRender, HorizonShowsBlades) {

@@ -372,6 +372,8 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
   if (scene.terrain() != nullptr)
     grass_pass_.prepare(*scene.terrain(), view, targets_->depth, new_targets, kind,
                         uniforms.ground.y);
+  if (scene.terrain() != nullptr && view.last)
+    grass_pass_.prepareVelocity(*scene.terrain(), VelocityPass::kFormat);
   if (scene.terrain() != nullptr) grass_blades_.prepare(*scene.terrain(), view, kind);
   if (scene.terrain() != nullptr && billboard_trial_)
     grass_billboards_.prepare(*scene.terrain(), view, kind, *billboard_trial_);
@@ -404,16 +406,17 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
     timers_.stamp(commands, 3);
     recordTone(commands, view, units);
     timers_.stamp(commands, 4);
-    if (view.last) velocity_pass_.record(commands, layout_, *frame_set_, scene);
+    if (view.last) velocity_pass_.record(commands, layout_, *frame_set_, scene, grass_pass_);
     targets_->recordReadback(commands, view.hdr);
   });
   Frame frame;
   frame.image = targets_->readPicture();
   if (view.hdr) frame.hdr = targets_->readHdr(units);
   if (view.last)
-    frame.motion =
-        velocity_pass_.read(view.camera, view.last->camera,
-                            scene.ground() ? std::optional(scene.groundHeight()) : std::nullopt);
+    frame.motion = velocity_pass_.read(view.camera, view.last->camera,
+                                       scene.ground() && scene.terrain() == nullptr
+                                           ? std::optional(scene.groundHeight())
+                                           : std::nullopt);
   const ExposurePass::Measured measured = exposure_pass_.measured();
   frame.average_luminance =
       view.exposure.ev ? shared::meteredLuminance(*view.exposure.ev) : measured.average / units;

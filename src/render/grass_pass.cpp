@@ -20,6 +20,9 @@ constexpr std::uint32_t kVertex[] = {
 constexpr std::uint32_t kFragment[] = {
 #include "shaders/grass_pass.frag.inc"
 };
+constexpr std::uint32_t kVelocity[] = {
+#include "shaders/terrain_velocity.frag.inc"
+};
 constexpr std::uint32_t kDepthRange[] = {
 #include "shaders/depth_range.frag.inc"
 };
@@ -209,25 +212,46 @@ void GrassPass::prepare(GpuTerrain& terrain, const View& view, const gpu::Textur
   }
 }
 
-void GrassPass::addPipeline(gpu::Constants constants) {
+gpu::GraphicsRequest GrassPass::requestOf(gpu::SpirV fragment,
+                                          const gpu::Constants& constants) const {
+  return {
+      .vertex = kVertex,
+      .fragment = fragment,
+      .constants = constants,
+      .layout = *layout_,
+      .bindings = {{.binding = 0,
+                    .stride = sizeof(shared::TerrainNode),
+                    .inputRate = vk::VertexInputRate::eInstance}},
+      .attributes = {{.location = 0, .binding = 0, .format = vk::Format::eR32G32B32A32Sfloat},
+                     {.location = 1, .binding = 0, .format = vk::Format::eR32Sfloat, .offset = 16}},
+      .depth = FrameLayout::kDepth};
+}
+
+void GrassPass::addPipeline(const gpu::Constants& constants) {
   if (pipelines_.contains(constants)) return;
-  vk::raii::Pipeline pipeline = gpu::makeGraphicsPipeline(
-      *device_,
-      {.vertex = kVertex,
-       .fragment = kFragment,
-       .constants = constants,
-       .layout = *layout_,
-       .bindings = {{.binding = 0,
-                     .stride = sizeof(shared::TerrainNode),
-                     .inputRate = vk::VertexInputRate::eInstance}},
-       .attributes =
-           {{.location = 0, .binding = 0, .format = vk::Format::eR32G32B32A32Sfloat},
-            {.location = 1, .binding = 0, .format = vk::Format::eR32Sfloat, .offset = 16}},
-       .color = FrameLayout::kColor,
-       .depth = FrameLayout::kDepth,
-       .samples = FrameLayout::kSamples,
-       .blend = gpu::Blend::kOver});
-  pipelines_.emplace(std::move(constants), std::move(pipeline));
+  gpu::GraphicsRequest request = requestOf(kFragment, constants);
+  request.color = FrameLayout::kColor;
+  request.samples = FrameLayout::kSamples;
+  request.blend = gpu::Blend::kOver;
+  pipelines_.emplace(constants, gpu::makeGraphicsPipeline(*device_, request));
+}
+
+void GrassPass::prepareVelocity(const GpuTerrain& terrain, vk::Format format) {
+  const gpu::Constants constants = constantsOf(terrain, 0, {}, {}, false);
+  if (velocity_.contains(constants)) return;
+  gpu::GraphicsRequest request = requestOf(kVelocity, constants);
+  request.color = format;
+  velocity_.emplace(constants, gpu::makeGraphicsPipeline(*device_, request));
+}
+
+void GrassPass::recordVelocity(const vk::raii::CommandBuffer& commands, vk::DescriptorSet frame_set,
+                               const GpuTerrain& terrain) const {
+  commands.bindVertexBuffers(0, {*terrain.nodes_.buffer}, {0});
+  commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
+                        *velocity_.at(constantsOf(terrain, 0, {}, {}, false)));
+  commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout_, 0,
+                              {frame_set, **terrain.layers_[0].set}, nullptr);
+  commands.draw(6 * kTerrainCells * kTerrainCells, nodes_, 0, 0);
 }
 
 void GrassPass::recordDepthRange(const vk::raii::CommandBuffer& commands,

@@ -62,11 +62,18 @@ class GrassPass {
   void recordDepthRange(const vk::raii::CommandBuffer& commands, const gpu::Texture& depth) const;
   void record(const vk::raii::CommandBuffer& commands, vk::DescriptorSet frame_set,
               const GpuTerrain& terrain, const Terms& terms, const DrawKind& kind) const;
+  /// How far the ground, or the upper side of the first layer, has come since the last frame:
+  /// inside of the velocity pass's rendering, to a target of this format. Behind prepare().
+  void prepareVelocity(const GpuTerrain& terrain, vk::Format format);
+  void recordVelocity(const vk::raii::CommandBuffer& commands, vk::DescriptorSet frame_set,
+                      const GpuTerrain& terrain) const;
 
  private:
   gpu::Constants constantsOf(const GpuTerrain& terrain, std::size_t layer, const Terms& terms,
                              const DrawKind& kind, bool from_eye) const;
-  void addPipeline(gpu::Constants constants);
+  /// Without what the target is.
+  gpu::GraphicsRequest requestOf(gpu::SpirV fragment, const gpu::Constants& constants) const;
+  void addPipeline(const gpu::Constants& constants);
 
   const gpu::Device* device_;
   gpu::SetLayout set_layout_, depth_layout_;
@@ -75,7 +82,7 @@ class GrassPass {
   gpu::DescriptorSet depth_set_;
   vk::raii::Sampler nearest_;
   std::optional<gpu::Texture> range_;
-  std::map<gpu::Constants, vk::raii::Pipeline> pipelines_;
+  std::map<gpu::Constants, vk::raii::Pipeline> pipelines_, velocity_;
   std::uint32_t nodes_ = 0;  ///< that are drawn
 };
 

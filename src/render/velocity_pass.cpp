@@ -15,7 +15,6 @@ constexpr std::uint32_t kVertex[] = {
 constexpr std::uint32_t kFragment[] = {
 #include "shaders/velocity_pass.frag.inc"
 };
-constexpr vk::Format kFormat = vk::Format::eR32G32Sfloat;
 /// Of pixels without plants; no vertex comes this far.
 constexpr float kNothing = 1e30f;
 
@@ -57,7 +56,8 @@ void VelocityPass::prepare(const gpu::Device& device, const FrameLayout& layout,
 }
 
 void VelocityPass::record(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,
-                          vk::DescriptorSet frame_set, const GpuScene& scene) const {
+                          vk::DescriptorSet frame_set, const GpuScene& scene,
+                          const GrassPass& grass) const {
   const vk::ImageAspectFlags color_aspect = vk::ImageAspectFlagBits::eColor;
   gpu::imageBarrier(commands, *ways_->image, color_aspect, gpu::Use::kUndefined,
                     gpu::Use::kColorAttachment);
@@ -92,6 +92,7 @@ void VelocityPass::record(const vk::raii::CommandBuffer& commands, const FrameLa
     commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipelines_.at(constantsOf(draw)));
     scene.record(commands, *layout.pipeline, frame_set, draw);
   }
+  if (scene.terrain() != nullptr) grass.recordVelocity(commands, frame_set, *scene.terrain());
   commands.endRendering();
   gpu::imageBarrier(commands, *ways_->image, color_aspect, gpu::Use::kColorAttachment,
                     gpu::Use::kTransferSource);

@@ -100,13 +100,14 @@ float heightOfDepth(float root) {
 /// So many slices as one.
 void meetSlices(inout Met met, GrassRay ray, bool across_u, uint number, float t, float w, float slices) {
   vec3 uv = slicePlaceAt(ray, across_u, number, t, w);
-  // Many slices vary less than one: each is at another place.
   float texels = float(kFarColumns) / (4.0 * grass.shell.w);
-  float level = log2(max(texels * grass.texels.w * (ray.t_start + t) * max(slices, 1.0), 1.0));
+  float level = log2(max(texels * grass.texels.w * (ray.t_start + t), 1.0));
   level = floor(min(level, float(kFarLevels - 1)) + 0.5);
   vec4 one = textureLod(far_colors, vec3(uv.xy, uv.z * float(kFarLevels) + level), 0.0);
-  vec4 mean = textureLod(far_colors, vec3(uv.xy, grass.limits.w * float(kFarLevels) + level), 0.0);
-  float share = 1.0 / max(slices, 1.0);
+  float widest = (grass.limits.w + 1.0) * float(kFarLevels) - 1.0;
+  vec4 mean = textureLod(far_colors, vec3(uv.xy, widest), 0.0);
+  // Many slices vary less than one: each is at another place.
+  float share = inversesqrt(max(slices, 1.0));
   float a = mix(mean.a * mean.a, one.a * one.a, share);
   if (a <= 0.0) return;
   float alpha = 1.0 - pow(1.0 - min(a * ray.density * (1.0 - bladesAt(ray, t, w)), 0.99), slices);

@@ -41,8 +41,8 @@ struct SharedResults {
   vec4 windy;      // gustySpeed / 10, motionUv, windUv's x
   vec4 grass;      // grassBend, plantsStanding, grassHeight
   vec4 shell;      // shellHeight, 1 / (1 + shellCrossing) both ways, slicePlace
-  vec4 ribbon;     // ribbonPoint, ribbonWidth
-  vec4 facing;     // ribbonNormal, wangPlace
+  vec4 ribbon;     // ribbonPoint / 8 (Vulkan's sines may be off by 2^-11 each), ribbonWidth
+  vec4 facing;     // squares of ribbonNormal / 32, wangPlace
   vec4 upright;    // meanFacing, sunThroughGrass
   vec4 terrain;    // drawnPlace / 100, bilinearHeight, rowFarthestFirst / 16
 };
@@ -160,8 +160,10 @@ SHARED_FUNCTION SharedResults evaluateShared(vec4 a, vec4 b) {
   GrassRibbonPart stalk = part;
   stalk.kind = uvec4(kRibbonStalk, 0u, 1u, 0u);
   GrassRibbon ribbon = ribbonOf(part, stalk, vec3(b.x, 0.0f, b.z), uint(4.0e9f * b.w), 1u);
-  r.ribbon = vec4(ribbonPoint(ribbon, a.z), 100.0f * ribbonWidth(ribbon.profile, 0.01f, a.z));
-  r.facing = vec4(ribbonNormal(ribbon, a.z, 2.0f * b.y - 1.0f, v),
+  r.ribbon =
+      vec4(ribbonPoint(ribbon, a.z) * 0.125f, 100.0f * ribbonWidth(ribbon.profile, 0.01f, a.z));
+  vec3 facing = ribbonNormal(ribbon, a.z, 2.0f * b.y - 1.0f, v);  // edge-on, either side may face
+  r.facing = vec4(facing * facing * 0.03125f,
                   wangPlace(uint(1.0e6f * a.x), uint(1.0e6f * a.y), b.z, kBorderOfGround));
   r.upright = vec4(meanFacing(v, l, a.x),
                    sunThroughGrass(a.y, l, vec4(0.8f, 0.6f, -0.6f, 0.8f), vec2(0.05f, 0.08f)));

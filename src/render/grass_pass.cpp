@@ -96,6 +96,16 @@ GpuTerrain::GpuTerrain(const gpu::Device& device, PackedTerrain packed,
     layer.packed = std::move(source);
   }
   upload.finish();
+  // An upload leaves buffers as vertex input.
+  device.submit([&](const vk::raii::CommandBuffer& commands) {
+    const auto readable = [&commands](const gpu::Buffer& buffer) {
+      for (const gpu::Use use :
+           {gpu::Use::kVertexStorage, gpu::Use::kFragmentStorage, gpu::Use::kComputeStorage})
+        gpu::bufferBarrier(commands, *buffer.buffer, gpu::Use::kTransferTarget, use);
+    };
+    readable(heights_);
+    for (const Layer& layer : layers_) readable(layer.cover);
+  });
   for (Layer& layer : layers_) {
     layer.set.emplace(device, layout);
     layer.set->setBuffer(0, layer.uniforms);

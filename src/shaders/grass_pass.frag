@@ -277,11 +277,9 @@ void main() {
   // At the horizon what is interpolated may lie behind the eye.
   vec3 middle = pixelDirection();
   if (dot(direction, middle) < 1.0 - 4.0 * grass.texels.w * grass.texels.w) direction = middle;
-  vec3 painted = vec3(0.0);
-  if (!kGrass) painted = paintedGround(frame.eye.xz + from_eye.xz);
   if (!kGrass) {
     vec3 n = terrainNormal(from_eye.xz);
-    vec3 color = kTextures ? painted : vec3(0.18);
+    vec3 color = kTextures ? paintedGround(frame.eye.xz + from_eye.xz) : vec3(0.18);
     vec3 lit = illumination(kAmbient ? skyOn(from_eye, n) * color : vec3(0.0), frame.sun_light.rgb,
                             shadowAt(from_eye),
                             kDiffuse ? color * diffuseFactor(n, frame.to_sun.xyz) : vec3(0.0), 0.0, 0.0);

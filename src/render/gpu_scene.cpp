@@ -4,7 +4,7 @@
 
 namespace verdure {
 
-GpuScene::GpuScene(const gpu::Device& device, const PackedScene& packed,
+GpuScene::GpuScene(const gpu::Device& device, PackedScene packed,
                    vk::DescriptorSetLayout material_layout, const gpu::SetLayout& transfer_layout,
                    const MotionLayouts& motion_layouts, const gpu::SetLayout& grass_layout)
     : has_crown_normals_(!packed.crown_normals.empty()),
@@ -26,9 +26,9 @@ GpuScene::GpuScene(const gpu::Device& device, const PackedScene& packed,
   leaf_normals_ = vertices(packed.leaf_normals);
   crown_normals_ = vertices(packed.crown_normals);
   uvs_ = vertices(packed.uvs);
-  instances_ =
-      upload.buffer(std::span(packed.instances), Usage::eVertexBuffer | Usage::eStorageBuffer);
-  indices_ = upload.buffer(std::span(packed.indices), Usage::eIndexBuffer);
+  instances_ = upload.buffer(std::span(std::as_const(packed.instances)),
+                             Usage::eVertexBuffer | Usage::eStorageBuffer);
+  indices_ = upload.buffer(std::span(std::as_const(packed.indices)), Usage::eIndexBuffer);
   transfer_.emplace(device, upload, packed.transfers, packed.positions.size(), transfer_layout);
   motion_.emplace(device, upload, packed.motions, instances_, motion_layouts);
   for (Draw& draw : draws_) {
@@ -43,7 +43,7 @@ GpuScene::GpuScene(const gpu::Device& device, const PackedScene& packed,
     leaf_arrays_.push_back(upload.textureArray(
         leaf.layers, leaf.linear ? vk::Format::eR8G8B8A8Unorm : vk::Format::eR8G8B8A8Srgb));
   upload.finish();
-  if (packed.terrain) terrain_.emplace(device, *packed.terrain, grass_layout);
+  if (packed.terrain) terrain_.emplace(device, std::move(*packed.terrain), grass_layout);
 
   for (int clamp = 0; clamp < 4; ++clamp) {
     const auto mode = [](bool edge) {

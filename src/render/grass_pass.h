@@ -24,8 +24,6 @@ class GpuTerrain {
  public:
   GpuTerrain(const gpu::Device& device, PackedTerrain packed, const gpu::SetLayout& layout);
 
-  std::size_t layerCount() const { return layers_.size(); }
-
  private:
   friend class GrassPass;
   friend class GrassBlades;
@@ -44,7 +42,7 @@ class GpuTerrain {
   gpu::Buffer heights_;
   std::vector<vk::raii::Sampler> samplers_;
   std::vector<Layer> layers_;
-  mutable gpu::Buffer nodes_;
+  gpu::Buffer nodes_;
 };
 
 /// Draws a terrain, and rays through the grass on it, over what stands there already.

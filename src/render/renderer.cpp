@@ -101,11 +101,11 @@ int Renderer::validationMessages() const {
 
 void Renderer::setScene(const Scene& scene) {
   const Timer timer;
-  const PackedScene packed = packScene(scene);
+  PackedScene packed = packScene(scene);
   guarded(deviceName(), [&] {
     state_->scene.reset();
     state_->frames.forgetScene();
-    state_->scene.emplace(state_->device, packed, *state_->frames.layout().material_set,
+    state_->scene.emplace(state_->device, std::move(packed), *state_->frames.layout().material_set,
                           state_->frames.transferLayout(), state_->frames.motionLayouts(),
                           state_->frames.grassLayout());
   });

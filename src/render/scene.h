@@ -123,9 +123,9 @@ PackedScene packScene(const Scene& scene);
 /// map, thickness, colours and vectors of leaves, share and colour of what is transmitted).
 class GpuScene {
  public:
-  GpuScene(const gpu::Device& device, const PackedScene& packed,
-           vk::DescriptorSetLayout material_layout, const gpu::SetLayout& transfer_layout,
-           const MotionLayouts& motion_layouts, const gpu::SetLayout& grass_layout);
+  GpuScene(const gpu::Device& device, PackedScene packed, vk::DescriptorSetLayout material_layout,
+           const gpu::SetLayout& transfer_layout, const MotionLayouts& motion_layouts,
+           const gpu::SetLayout& grass_layout);
 
   /// Binds all vertex streams and the index buffer; the normals are those asked for.
   void bindVertices(const vk::raii::CommandBuffer& commands, NormalSource normals) const;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "verdure/field.h"
+#include "verdure/placement.h"
 #include "verdure/plant.h"
 
 /// Illumination of foliage from a density field: Luft, Balzer, Deussen, "Expressive Illumination of
@@ -100,14 +101,6 @@ DensityBake bakeDensity(const Plant& plant, const DensityOptions& options = {},
 /// plant's own where they are not, are DensityFit::before. Throws as bakeDensity.
 DensityOptions fitDensity(const Plant& plant, const DensityOptions& options,
                           DensityFit* fit = nullptr);
-
-/// A plant at a place: rotation about +Y (radians), then uniform scale, then translation (m).
-struct Placement {
-  std::uint32_t plant = 0;  ///< index into the population's plants
-  glm::vec3 position{0.0f};
-  float angle = 0.0f;
-  float scale = 1.0f;
-};
 
 /// Bakes a group of plants in one common field, so that neighbours darken each other: one result
 /// for each placement, in the plant's own frame (normals rotated back; the surface, the same for

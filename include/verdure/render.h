@@ -93,6 +93,21 @@ struct Exposure {
   std::optional<float> white;
 };
 
+/// How a picture is drawn.
+enum class Style {
+  kPhoto,       ///< light as it is
+  kEdges,       ///< lines where depths and normals jump (Saito and Takahashi 1990)
+  kToon,        ///< few even tones, with lines
+  kWatercolor,  ///< layers of pigment on paper (Luft and Deussen 2006)
+};
+
+/// What the drawn styles take for a surface's normal (Luft et al. 2007, Figure 7).
+enum class StyleNormals {
+  kRaw,        ///< the leaf's own
+  kRealigned,  ///< the crown's
+  kScaled,     ///< the crown's, as long as the ambient coefficient
+};
+
 /// One picture. The defaults are a clear summer day.
 struct View {
   int width = 960;
@@ -122,6 +137,8 @@ struct View {
     double seconds = 0.0;
   };
   std::optional<Moment> last = {};
+  Style style = Style::kPhoto;
+  StyleNormals style_normals = StyleNormals::kScaled;
 };
 
 struct FrameTimes {

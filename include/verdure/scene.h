@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "verdure/grass.h"
+#include "verdure/levels.h"
 #include "verdure/motion.h"
+#include "verdure/placement.h"
 #include "verdure/plant.h"
 #include "verdure/terrain.h"
 #include "verdure/transfer.h"
@@ -55,6 +57,22 @@ struct GrassLayer {
   float variation = 0.7f;  ///< share of the patches of tones that are laid over it, [0, 1]
 };
 
+/// Of a forest's plants one. `levels` may be null: then it is drawn as it is at all distances.
+struct ForestKind {
+  const Plant* plant = nullptr;
+  const CrownLight* light = nullptr;    ///< may be null
+  const PlantMotion* motion = nullptr;  ///< may be null
+  const PlantLevels* levels = nullptr;
+};
+
+/// Many plants of a few kinds. They are chosen and drawn by the GPU: those that are seen, each as
+/// fine as its size in the picture asks for.
+struct Forest {
+  std::vector<ForestKind> kinds;
+  std::vector<Placement> places;  ///< Placement::plant: index into kinds
+  float detail = 1.0f;            ///< finer levels reach so many times farther, (0, 100]
+};
+
 /// Coordinates are relative to the origin of the first item's plant; a plant with another origin
 /// stands where the difference of both puts it. Scenes hundreds of kilometres from the coordinates'
 /// origin therefore look the same as at it.
@@ -64,6 +82,7 @@ struct Scene {
   float ground_height = 0.0f;
   const Terrain* terrain = nullptr;    ///< takes the plane's place
   std::vector<GrassLayer> grass = {};  ///< on either; the first covers it, the others add to it
+  const Forest* forest = nullptr;      ///< beside the items
 };
 
 /// A camera that shows the whole scene from `azimuth` (as the sun's) and `elevation` (radians),

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/bake_parameters.h"
 #include "app/ground_options.h"
 #include "app/scene_options.h"
 #include "verdure/density.h"
@@ -80,26 +81,6 @@ struct LeafBakeCommand {
   bool json = false;
 };
 void runLeafBake(const LeafBakeCommand& command);
-
-enum class BakeField { kMetaball, kOpticalDepth };
-
-/// The parameters of the bake as the command line gives them; `options` reads them.
-struct BakeParameters {
-  DensityOptions options;
-  std::string field;            ///< metaball or optical-depth; empty: as fieldOr() finds
-  std::string metaball_option;  ///< one that was given and that only the metaball field has
-  std::string norm = "2";
-  std::string normals;      ///< empty: the field's own
-  std::optional<bool> fit;  ///< unset: the optical-depth field's is fitted, the metaballs' is not
-  double max_memory_mib = 4096;
-
-  /// The field that was named, else the one that the given options need, else `fallback`. Throws
-  /// Error: an unknown field, an option that the named one has not.
-  BakeField fieldOr(BakeField fallback) const;
-  /// Throws Error for an unknown norm or kind of normals.
-  DensityOptions checked() const;
-  DepthOptions checkedDepth() const;
-};
 
 struct RayParameters {
   std::string ambient = "density";

@@ -1,0 +1,80 @@
+#ifndef VERDURE_APP_LOADED_SCENE_H_
+#define VERDURE_APP_LOADED_SCENE_H_
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/scene_settings.h"
+#include "verdure/levels.h"
+#include "verdure/scene.h"
+#include "verdure/transfer.h"
+
+namespace verdure::app {
+
+/// A plant of a scene with all that its look needs.
+struct LoadedPlant {
+  Plant plant;
+  std::optional<CrownLight> light;
+  std::optional<PlantTransfer> transfer;
+  std::optional<PlantMotion> motion;
+  std::optional<PlantLevels> levels;
+  bool missing = false;  ///< a marker stands for it
+};
+
+struct LoadSceneOptions {
+  /// Loads what any look and any wind need, so that views may change (LoadedScene::view()); else
+  /// what the settings' own do.
+  bool any_look = false;
+  /// For the path tracer: no baked light, no levels, plants moved to their moment in the wind.
+  bool for_reference = false;
+  bool film = false;              ///< wind blows unless it is told otherwise
+  bool missing_is_error = false;  ///< else a plant whose file cannot be read becomes a marker
+  std::function<void(const std::string& step, double share)> progress;  ///< share < 0: unknown
+};
+
+/// What scene settings name, loaded, grown and baked.
+class LoadedScene {
+ public:
+  /// Throws Error: what cannot be read (but see LoadSceneOptions::missing_is_error), more places
+  /// than memory has room for.
+  explicit LoadedScene(const SceneSettings& settings, const LoadSceneOptions& options = {});
+  LoadedScene(const LoadedScene&) = delete;
+  LoadedScene& operator=(const LoadedScene&) = delete;
+
+  /// Its pointers live as long as this.
+  Scene scene() const;
+  /// The settings' view of it. Another look, daylight or camera may be given for a scene that was
+  /// loaded for any look; plants, places and ground must be those that were loaded.
+  View view() const { return view(settings_); }
+  View view(const SceneSettings& settings) const;
+
+  /// Bakes a plant's light anew. Levels of it keep their own until the scene is loaded again.
+  void bake(std::size_t plant, const BakeParameters& parameters);
+
+  const SceneSettings& settings() const { return settings_; }
+  const std::vector<LoadedPlant>& plants() const { return plants_; }
+  const Forest& forest() const { return forest_; }  ///< without places if there is none
+  const std::vector<std::string>& notes() const { return notes_; }  ///< one line each
+  double bakeSeconds() const { return bake_seconds_; }
+  /// "best (baked)": what the settings' light turned out to be.
+  std::string lightName() const;
+
+ private:
+  SceneSettings settings_;
+  LoadSceneOptions options_;
+  std::vector<LoadedPlant> plants_;
+  std::optional<Terrain> terrain_;
+  std::vector<GrassSet> grass_;
+  std::vector<std::optional<CoverMap>> covers_;
+  std::vector<std::pair<std::size_t, glm::mat4>> singles_;  ///< plants that stand once
+  Forest forest_;
+  float ground_height_ = 0.0f;
+  std::vector<std::string> notes_;
+  double bake_seconds_ = 0.0;
+};
+
+}  // namespace verdure::app
+
+#endif  // VERDURE_APP_LOADED_SCENE_H_

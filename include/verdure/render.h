@@ -93,9 +93,11 @@ struct Exposure {
   std::optional<float> white;
 };
 
-/// How a picture is drawn.
+/// How a picture is drawn. The drawn styles take the sky and the ground from the photo and draw the
+/// plants on them; Frame::hdr is empty.
 enum class Style {
   kPhoto,       ///< light as it is
+  kNormals,     ///< what StyleNormals says as colours (Luft et al. 2007, Figure 7, top row)
   kEdges,       ///< lines where depths and normals jump (Saito and Takahashi 1990)
   kToon,        ///< few even tones, with lines
   kWatercolor,  ///< layers of pigment on paper (Luft and Deussen 2006)
@@ -146,7 +148,7 @@ struct FrameTimes {
   double pack_ms = 0;    ///< packing and upload, CPU
   double shadow_ms = 0;  ///< GPU; with the light from transfer vectors, when it changed
   double color_ms = 0;   ///< GPU
-  double tone_ms = 0;    ///< GPU; exposure, bloom, tone curve
+  double tone_ms = 0;    ///< GPU; exposure, bloom, tone curve; drawn styles
 };
 
 struct Frame {

@@ -65,15 +65,18 @@ vk::raii::Pipeline makeGraphicsPipeline(const Device& device, const GraphicsRequ
       .colorWriteMask = request.blend == Blend::kNothing
                             ? vk::ColorComponentFlags{}
                             : Component::eR | Component::eG | Component::eB | Component::eA};
-  const bool has_color = request.color != vk::Format::eUndefined;
-  const vk::PipelineColorBlendStateCreateInfo blend{.attachmentCount = has_color ? 1u : 0u,
-                                                    .pAttachments = &attachment};
+  std::vector<vk::Format> colors = request.more_colors;
+  if (request.color != vk::Format::eUndefined) colors.insert(colors.begin(), request.color);
+  const auto color_count = static_cast<std::uint32_t>(colors.size());
+  const std::vector<vk::PipelineColorBlendAttachmentState> attachments(colors.size(), attachment);
+  const vk::PipelineColorBlendStateCreateInfo blend{.attachmentCount = color_count,
+                                                    .pAttachments = attachments.data()};
   const std::array dynamic_states{vk::DynamicState::eViewport, vk::DynamicState::eScissor};
   const vk::PipelineDynamicStateCreateInfo dynamic{
       .dynamicStateCount = static_cast<std::uint32_t>(dynamic_states.size()),
       .pDynamicStates = dynamic_states.data()};
-  const vk::PipelineRenderingCreateInfo rendering{.colorAttachmentCount = has_color ? 1u : 0u,
-                                                  .pColorAttachmentFormats = &request.color,
+  const vk::PipelineRenderingCreateInfo rendering{.colorAttachmentCount = color_count,
+                                                  .pColorAttachmentFormats = colors.data(),
                                                   .depthAttachmentFormat = request.depth};
   return device.raii().createGraphicsPipeline(
       nullptr,

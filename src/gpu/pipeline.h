@@ -31,6 +31,7 @@ struct GraphicsRequest {
   std::vector<vk::VertexInputBindingDescription> bindings = {};
   std::vector<vk::VertexInputAttributeDescription> attributes = {};
   vk::Format color = vk::Format::eUndefined;  ///< eUndefined = none
+  std::vector<vk::Format> more_colors = {};   ///< of further targets, blended as the first
   vk::Format depth = vk::Format::eUndefined;
   vk::SampleCountFlagBits samples = vk::SampleCountFlagBits::e1;
   vk::CompareOp depth_compare = vk::CompareOp::eGreater;

@@ -42,6 +42,10 @@ UseInfo useInfo(Use use) {
       return {Stage::eFragmentShader, Access::eShaderStorageRead, Layout::eUndefined};
     case Use::kHostRead:
       return {Stage::eHost, Access::eHostRead, Layout::eUndefined};
+    case Use::kAcquired:  // the stage that waits for the semaphore
+      return {Stage::eColorAttachmentOutput, Access::eNone, Layout::eUndefined};
+    case Use::kPresented:
+      return {Stage::eNone, Access::eNone, Layout::ePresentSrcKHR};
   }
   return {};
 }

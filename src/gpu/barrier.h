@@ -22,6 +22,8 @@ enum class Use {
   kIndirect,         ///< buffer that an indirect draw reads
   kFragmentStorage,  ///< storage buffer that a fragment shader reads
   kHostRead,         ///< read on the CPU after a fence
+  kAcquired,         ///< of a swapchain, to be drawn to; its contents may be lost
+  kPresented,        ///< of a swapchain, handed to the window
 };
 
 struct UseInfo {

@@ -28,14 +28,22 @@ VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
   return VK_FALSE;
 }
 
+bool hasSwapchains(const vk::raii::PhysicalDevice& physical) {
+  const auto present = physical.enumerateDeviceExtensionProperties();
+  return std::any_of(present.begin(), present.end(), [](const vk::ExtensionProperties& extension) {
+    return std::strcmp(extension.extensionName, VK_KHR_SWAPCHAIN_EXTENSION_NAME) == 0;
+  });
+}
+
 /// Why a device cannot be used; empty = it can.
-std::string unfit(const vk::raii::PhysicalDevice& physical) {
+std::string unfit(const vk::raii::PhysicalDevice& physical, bool window) {
   if (physical.getProperties().apiVersion < VK_API_VERSION_1_3) return "has no Vulkan 1.3";
   const auto features =
       physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan13Features>();
   const auto& v13 = features.get<vk::PhysicalDeviceVulkan13Features>();
   if (!v13.dynamicRendering || !v13.synchronization2)
     return "lacks dynamic rendering or synchronization2";
+  if (window && !hasSwapchains(physical)) return "shows nothing in windows";
   return "";
 }
 
@@ -45,7 +53,8 @@ struct Device::Messages {
   std::atomic<int> count = 0;
 };
 
-Device::Device(const std::string& name, bool validation) : messages_(std::make_unique<Messages>()) {
+Device::Device(const std::string& name, bool validation, const WindowSurface* window)
+    : messages_(std::make_unique<Messages>()) {
   try {
     context_ = std::make_unique<vk::raii::Context>();
   } catch (const std::runtime_error&) {
@@ -66,6 +75,9 @@ Device::Device(const std::string& name, bool validation) : messages_(std::make_u
     extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
   }
+  if (window != nullptr)
+    for (const std::string& extension : window->instance_extensions)
+      extensions.push_back(extension.c_str());
   using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
   using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
   const vk::DebugUtilsMessengerCreateInfoEXT messenger{
@@ -90,6 +102,7 @@ Device::Device(const std::string& name, bool validation) : messages_(std::make_u
                 kInstallDriver);
   }
   if (validation) messenger_ = vk::raii::DebugUtilsMessengerEXT(instance_, messenger);
+  if (window != nullptr) surface_ = vk::raii::SurfaceKHR(instance_, window->make(*instance_));
   chooseDevice(name);
 
   const float priority = 1.0f;
@@ -102,10 +115,14 @@ Device::Device(const std::string& name, bool validation) : messages_(std::make_u
   const bool software = physical_.getProperties().deviceType == vk::PhysicalDeviceType::eCpu;
   if (features.samplerAnisotropy && !software) max_anisotropy_ = limits_.maxSamplerAnisotropy;
   const vk::PhysicalDeviceVulkan13Features v13{.synchronization2 = true, .dynamicRendering = true};
-  device_ = vk::raii::Device(physical_, vk::DeviceCreateInfo{.pNext = &v13,
-                                                             .queueCreateInfoCount = 1,
-                                                             .pQueueCreateInfos = &queue,
-                                                             .pEnabledFeatures = &features});
+  const char* const swapchains = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
+  device_ = vk::raii::Device(
+      physical_, vk::DeviceCreateInfo{.pNext = &v13,
+                                      .queueCreateInfoCount = 1,
+                                      .pQueueCreateInfos = &queue,
+                                      .enabledExtensionCount = window != nullptr ? 1u : 0u,
+                                      .ppEnabledExtensionNames = &swapchains,
+                                      .pEnabledFeatures = &features});
   queue_ = device_.getQueue(family_, 0);
   pool_ = vk::raii::CommandPool(
       device_, vk::CommandPoolCreateInfo{.flags = vk::CommandPoolCreateFlagBits::eTransient,
@@ -121,13 +138,17 @@ void Device::chooseDevice(const std::string& name) {
   for (vk::raii::PhysicalDevice& physical : vk::raii::PhysicalDevices(instance_)) {
     const vk::PhysicalDeviceProperties properties = physical.getProperties();
     const std::string device_name = properties.deviceName;
-    std::string reason = unfit(physical);
+    const bool window = *surface_ != vk::SurfaceKHR();
+    std::string reason = unfit(physical, window);
     const auto families = physical.getQueueFamilyProperties();
-    const auto graphics =
-        std::find_if(families.begin(), families.end(), [](const vk::QueueFamilyProperties& f) {
-          return bool(f.queueFlags & vk::QueueFlagBits::eGraphics);
-        });
-    if (reason.empty() && graphics == families.end()) reason = "has no graphics queue";
+    const auto fits = [&](const vk::QueueFamilyProperties& family) {
+      const auto index = static_cast<std::uint32_t>(&family - families.data());
+      return bool(family.queueFlags & vk::QueueFlagBits::eGraphics) &&
+             (!window || physical.getSurfaceSupportKHR(index, *surface_));
+    };
+    const auto graphics = std::find_if(families.begin(), families.end(), fits);
+    if (reason.empty() && graphics == families.end())
+      reason = window ? "cannot draw to this window" : "has no graphics queue";
     if (reason.empty() && lowered(device_name).find(lowered(name)) == std::string::npos)
       reason = "is not called so";
     if (!reason.empty()) {

@@ -346,7 +346,7 @@ void FrameDrawer::recordTone(const vk::raii::CommandBuffer& commands, const View
        .bloom = view.bloom});
 }
 
-Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
+Frame FrameDrawer::draw(GpuScene& scene, const View& view, const gpu::Texture* target) {
   checkView(view);
   const bool new_targets = resize(view);
   scene.setWind(view.wind, view.last ? std::optional(view.last->wind) : std::nullopt);
@@ -407,11 +407,14 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view) {
     recordTone(commands, view, units);
     timers_.stamp(commands, 4);
     if (view.last) velocity_pass_.record(commands, layout_, *frame_set_, scene, grass_pass_);
-    targets_->recordReadback(commands, view.hdr);
+    if (target != nullptr)
+      targets_->recordHandOver(commands, *target);
+    else
+      targets_->recordReadback(commands, view.hdr);
   });
   Frame frame;
-  frame.image = targets_->readPicture();
-  if (view.hdr) frame.hdr = targets_->readHdr(units);
+  if (target == nullptr) frame.image = targets_->readPicture();
+  if (target == nullptr && view.hdr) frame.hdr = targets_->readHdr(units);
   if (view.last)
     frame.motion = velocity_pass_.read(view.camera, view.last->camera,
                                        scene.ground() && scene.terrain() == nullptr

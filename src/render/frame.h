@@ -41,8 +41,10 @@ class FrameDrawer {
     grass_blades_.forget();
   }
 
-  /// Draws and reads back. Throws Error for sizes out of range.
-  Frame draw(GpuScene& scene, const View& view);
+  /// Draws and reads back. With a `target` (of the picture's size and format, in use
+  /// kFragmentSampled before and after), the picture goes there and Frame::image stays empty.
+  /// Throws Error for sizes out of range.
+  Frame draw(GpuScene& scene, const View& view, const gpu::Texture* target = nullptr);
 
   /// In tests alone, which look at what moves in a picture when only the cascades do.
   struct CascadeTrial {

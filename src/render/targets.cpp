@@ -70,6 +70,22 @@ void Targets::recordReadback(const vk::raii::CommandBuffer& commands, bool hdr) 
   recordCopy(commands, resolved, *hdr_readback_);
 }
 
+void Targets::recordHandOver(const vk::raii::CommandBuffer& commands,
+                             const gpu::Texture& to) const {
+  gpu::imageBarrier(commands, *picture.image, kColorAspect, gpu::Use::kColorAttachment,
+                    gpu::Use::kTransferSource);
+  gpu::imageBarrier(commands, *to.image, kColorAspect, gpu::Use::kFragmentSampled,
+                    gpu::Use::kTransferTarget);
+  const vk::ImageSubresourceLayers layers{.aspectMask = kColorAspect, .layerCount = 1};
+  commands.copyImage(*picture.image, vk::ImageLayout::eTransferSrcOptimal, *to.image,
+                     vk::ImageLayout::eTransferDstOptimal,
+                     vk::ImageCopy{.srcSubresource = layers,
+                                   .dstSubresource = layers,
+                                   .extent = {picture.request.width, picture.request.height, 1}});
+  gpu::imageBarrier(commands, *to.image, kColorAspect, gpu::Use::kTransferTarget,
+                    gpu::Use::kFragmentSampled);
+}
+
 Image Targets::readPicture() const {
   Image image(static_cast<int>(picture.request.width), static_cast<int>(picture.request.height));
   std::memcpy(image.rgba.data(), picture_readback_.memory.mapped(), image.rgba.size());

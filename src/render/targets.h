@@ -21,6 +21,8 @@ class Targets {
 
   /// Copy the picture (then kTransferSource) and, on request, the average (from kFragmentSampled).
   void recordReadback(const vk::raii::CommandBuffer& commands, bool hdr);
+  /// Instead: copy the picture to a texture as large, in use kFragmentSampled before and after.
+  void recordHandOver(const vk::raii::CommandBuffer& commands, const gpu::Texture& to) const;
   /// After the fence.
   Image readPicture() const;
   /// kcd/m^2; background is black.

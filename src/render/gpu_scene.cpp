@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "render/packed_light.h"
 #include "render/scene.h"
 
 namespace verdure {
@@ -104,6 +105,23 @@ GpuScene::GpuScene(const gpu::Device& device, PackedScene packed,
                         .pImageInfo = info});
     device.raii().updateDescriptorSets(writes, nullptr);
   }
+}
+
+bool GpuScene::setLight(const gpu::Device& device, const PackedLight& light) {
+  const auto bytes = [](const std::vector<PackedNormal>& normals) {
+    return normals.size() * sizeof(PackedNormal);
+  };
+  if (!has_crown_normals_ || bytes(light.leaf_normals) != leaf_normals_.size ||
+      bytes(light.crown_normals) != crown_normals_.size)
+    return false;
+  gpu::Upload upload(device);
+  const auto vertices = [&upload](const std::vector<PackedNormal>& normals) {
+    return upload.buffer(std::span(normals), vk::BufferUsageFlagBits::eVertexBuffer);
+  };
+  leaf_normals_ = vertices(light.leaf_normals);
+  crown_normals_ = vertices(light.crown_normals);
+  upload.finish();
+  return true;
 }
 
 void GpuScene::setWind(const Wind& wind, const std::optional<Wind>& last) {

@@ -119,6 +119,8 @@ void growBounds(const Bounds& box, const PackedInstance& place, Bounds& all);
 /// vectors of a plant that is turned or scaled.
 PackedScene packScene(const Scene& scene);
 
+struct PackedLight;
+
 /// A packed scene on the GPU, with a descriptor set for each material (set 1: base colour, normal
 /// map, thickness, colours and vectors of leaves, share and colour of what is transmitted).
 class GpuScene {
@@ -127,6 +129,9 @@ class GpuScene {
            const gpu::SetLayout& transfer_layout, const MotionLayouts& motion_layouts,
            const gpu::SetLayout& grass_layout);
 
+  /// Another bake of the same items, all of which had light; false, and nothing changes, where it
+  /// has not as many vertices.
+  bool setLight(const gpu::Device& device, const PackedLight& light);
   /// Binds all vertex streams and the index buffer; the normals are those asked for.
   void bindVertices(const vk::raii::CommandBuffer& commands, NormalSource normals) const;
   const std::vector<Draw>& draws() const { return draws_; }

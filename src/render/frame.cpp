@@ -150,6 +150,8 @@ void FrameDrawer::checkView(const View& view) const {
   demand(!view.exposure.ev || std::abs(*view.exposure.ev) <= 40.0f, "exposure.ev",
          "choose -40 to 40");
   demand(view.bloom >= 0.0f && view.bloom <= 1.0f, "bloom", "choose 0 to 1");
+  if (view.hdr && view.style != Style::kPhoto)
+    throw Error("view", "a drawn style has no light to give", "ask for hdr with Style::kPhoto");
   demand(view.visibility_exponent > 0.0f && std::isfinite(view.visibility_exponent),
          "visibility_exponent", "choose a number above 0");
   demand(std::isfinite(view.seconds) && (!view.last || std::isfinite(view.last->seconds)),
@@ -164,6 +166,7 @@ void FrameDrawer::checkView(const View& view) const {
 bool FrameDrawer::resize(const View& view) {
   if (targets_ && targets_->fits(view.width, view.height)) return false;
   targets_.reset();
+  if (style_pass_) style_pass_->forgetTargets();
   targets_.emplace(*device_, static_cast<std::uint32_t>(view.width),
                    static_cast<std::uint32_t>(view.height));
   exposure_pass_.setSource(targets_->resolved);
@@ -276,8 +279,10 @@ void FrameDrawer::recordColor(const vk::raii::CommandBuffer& commands, const Gpu
                     gpu::Use::kDepthAttachment);
   const bool terrain = scene.terrain() != nullptr;
   const bool billboards = terrain && billboard_trial_;
-  beginColor(commands, true, !terrain || billboards);
-  plant_pass_.record(commands, layout_, *frame_set_, scene, view.terms);
+  beginColor(commands, view, true, !terrain || billboards);
+  // The drawn styles draw plants themselves.
+  if (view.style == Style::kPhoto)
+    plant_pass_.record(commands, layout_, *frame_set_, scene, view.terms);
   if (terrain && !billboards)
     grass_blades_.record(commands, *frame_set_, *scene.terrain(), view.terms, kind);
   backdrop_pass_.record(commands, layout_, *frame_set_, view.terms, kind,
@@ -289,12 +294,13 @@ void FrameDrawer::recordColor(const vk::raii::CommandBuffer& commands, const Gpu
   grass_pass_.recordDepthRange(commands, targets_->depth);
   gpu::imageBarrier(commands, *targets_->color.image, kColorAspect, gpu::Use::kColorAttachment,
                     gpu::Use::kColorAttachment);
-  beginColor(commands, false, true);
+  beginColor(commands, view, false, true);
   grass_pass_.record(commands, *frame_set_, *scene.terrain(), view.terms, kind);
   commands.endRendering();
 }
 
-void FrameDrawer::beginColor(const vk::raii::CommandBuffer& commands, bool first, bool last) const {
+void FrameDrawer::beginColor(const vk::raii::CommandBuffer& commands, const View& view, bool first,
+                             bool last) const {
   const vk::AttachmentLoadOp load =
       first ? vk::AttachmentLoadOp::eClear : vk::AttachmentLoadOp::eLoad;
   vk::RenderingAttachmentInfo color{
@@ -312,7 +318,8 @@ void FrameDrawer::beginColor(const vk::raii::CommandBuffer& commands, bool first
       .imageView = *targets_->depth.view,
       .imageLayout = vk::ImageLayout::eDepthAttachmentOptimal,
       .loadOp = load,
-      .storeOp = last ? vk::AttachmentStoreOp::eDontCare : vk::AttachmentStoreOp::eStore,
+      .storeOp = last && view.style == Style::kPhoto ? vk::AttachmentStoreOp::eDontCare
+                                                     : vk::AttachmentStoreOp::eStore,
       .clearValue = vk::ClearValue(vk::ClearDepthStencilValue{.depth = 0.0f})};
   const vk::Rect2D area{.extent = {targets_->color.request.width, targets_->color.request.height}};
   commands.beginRendering({.renderArea = area,
@@ -338,7 +345,7 @@ void FrameDrawer::recordTone(const vk::raii::CommandBuffer& commands, const View
                     gpu::Use::kFragmentSampled);
   bloom_pass_.record(commands, view.bloom > 0.0f);
   tone_pass_.record(
-      commands, targets_->picture,
+      commands, view.style == Style::kPhoto ? targets_->picture : style_pass_->backdrop(),
       {.background = glm::vec4(view.background.value_or(glm::vec3(0.0f)), 0.0f),
        .key = view.exposure.key,
        .white = view.exposure.white.value_or(0.0f),
@@ -367,7 +374,11 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view, const gpu::Texture* t
   if (view.last) velocity_pass_.prepare(*device_, layout_, scene, view.width, view.height);
   if (!depth_maps) shadow_pass_.prepare(*device_, layout_, scene);
   if (depth_maps) light_depth_pass_.prepare(*device_, layout_, scene, view.terms);
-  plant_pass_.prepare(*device_, layout_, scene, view.terms);
+  const bool photo = view.style == Style::kPhoto;
+  if (photo) plant_pass_.prepare(*device_, layout_, scene, view.terms);
+  if (!photo && !style_pass_)
+    style_pass_.emplace(*device_, layout_, *motion_pass_.layouts().vertex.layout);
+  if (!photo) style_pass_->prepare(scene, view, targets_->depth, uniforms.ground.z);
   backdrop_pass_.prepare(*device_, layout_, view.terms, kind, scene.ground());
   if (scene.terrain() != nullptr)
     grass_pass_.prepare(*scene.terrain(), view, targets_->depth, new_targets, kind,
@@ -405,6 +416,8 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view, const gpu::Texture* t
     recordColor(commands, scene, view, kind);
     timers_.stamp(commands, 3);
     recordTone(commands, view, units);
+    if (!photo)
+      style_pass_->record(commands, *frame_set_, scene, view, targets_->depth, targets_->picture);
     timers_.stamp(commands, 4);
     if (view.last) velocity_pass_.record(commands, layout_, *frame_set_, scene, grass_pass_);
     if (target != nullptr)

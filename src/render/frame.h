@@ -20,6 +20,7 @@
 #include "render/plant_pass.h"
 #include "render/shadow_pass.h"
 #include "render/sky_image.h"
+#include "render/style_pass.h"
 #include "render/targets.h"
 #include "render/tone_pass.h"
 #include "render/transfer_pass.h"
@@ -68,7 +69,8 @@ class FrameDrawer {
                    const DrawKind& kind) const;
   /// Begins rendering to the samples: onto what is there unless `first`; `last`: with their
   /// average.
-  void beginColor(const vk::raii::CommandBuffer& commands, bool first, bool last) const;
+  void beginColor(const vk::raii::CommandBuffer& commands, const View& view, bool first,
+                  bool last) const;
   void recordTone(const vk::raii::CommandBuffer& commands, const View& view, float units) const;
 
   const gpu::Device* device_;
@@ -87,6 +89,7 @@ class FrameDrawer {
   ExposurePass exposure_pass_;
   BloomPass bloom_pass_;
   TonePass tone_pass_;
+  std::optional<StylePass> style_pass_;  ///< since a drawn style was first asked for
   gpu::Timers timers_;
   gpu::Texture ground_texture_, ground_noise_;
   vk::raii::Sampler ground_sampler_ = nullptr;  ///< repeats both ways

@@ -10,9 +10,13 @@ constexpr std::uint32_t kVertex[] = {
 }  // namespace
 
 vk::raii::Pipeline makeFullscreenPipeline(const gpu::Device& device, gpu::SpirV fragment,
-                                          vk::PipelineLayout layout, vk::Format target) {
-  return gpu::makeGraphicsPipeline(
-      device, {.vertex = kVertex, .fragment = fragment, .layout = layout, .color = target});
+                                          vk::PipelineLayout layout, vk::Format target,
+                                          const gpu::Constants& constants) {
+  return gpu::makeGraphicsPipeline(device, {.vertex = kVertex,
+                                            .fragment = fragment,
+                                            .constants = constants,
+                                            .layout = layout,
+                                            .color = target});
 }
 
 void drawFullscreen(const vk::raii::CommandBuffer& commands, const gpu::Texture& target,

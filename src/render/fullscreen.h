@@ -8,7 +8,8 @@ namespace verdure {
 
 /// A pipeline that runs a fragment shader once for each pixel of a target.
 vk::raii::Pipeline makeFullscreenPipeline(const gpu::Device& device, gpu::SpirV fragment,
-                                          vk::PipelineLayout layout, vk::Format target);
+                                          vk::PipelineLayout layout, vk::Format target,
+                                          const gpu::Constants& constants = {});
 
 /// Fills `target` and leaves it as kColorAttachment; push constants are the caller's.
 void drawFullscreen(const vk::raii::CommandBuffer& commands, const gpu::Texture& target,

@@ -139,6 +139,7 @@ struct RenderCommand : SceneOptions {
   std::string background;
   int shadow_map = 2048;
   std::string cascades = "auto";
+  std::string style = "photo", style_normals = "scaled";
   DeviceOptions device;
   WindOptions wind;
   std::string frames;  ///< FIRST:LAST; empty: one picture
@@ -212,6 +213,7 @@ struct FiguresCommand {
   DeviceOptions device;
 };
 void runLuftFigures(const FiguresCommand& command);
+void runNprFigures(const FiguresCommand& command);
 void runGumbauFigures(const FiguresCommand& command);
 void runLeafFigures(const FiguresCommand& command);
 

@@ -263,6 +263,12 @@ int run(int argc, char** argv) {
   render_app
       ->add_option("--cascades", render.cascades, "Shadow maps, finer near the eye: auto or 1 to 4")
       ->capture_default_str();
+  render_app->add_option("--style", render.style, "photo, edges, toon, watercolour or normals")
+      ->capture_default_str();
+  render_app
+      ->add_option("--style-normals", render.style_normals,
+                   "What drawn styles take: raw, realigned or scaled (by the ambient coefficient)")
+      ->capture_default_str();
   addWindOptions(*render_app, render.wind);
   render_app->add_option(
       "--frames", render.frames,
@@ -340,7 +346,7 @@ int run(int argc, char** argv) {
   sky_app->add_option("--report", sky.report, "Folder for the fit's errors and pictures");
   sky_app->add_flag("--json", sky.json, "Print JSON, with the harmonics' weights");
 
-  FiguresCommand luft, gumbau, leaf_figures, grass_figures;
+  FiguresCommand luft, npr, gumbau, leaf_figures, grass_figures;
   CLI::App* figures_app = app.add_subcommand("figures", "Reproduce the figures of a paper");
   const auto add_figures = [figures_app](const char* name, const char* help,
                                          FiguresCommand& figures) {
@@ -353,6 +359,7 @@ int run(int argc, char** argv) {
     return paper;
   };
   CLI::App* luft_app = add_figures("luft", "Luft, Balzer, Deussen 2007: 1 to 6", luft);
+  CLI::App* npr_app = add_figures("npr", "Luft, Balzer, Deussen 2007: 7 and 8, drawn styles", npr);
   CLI::App* gumbau_app =
       add_figures("gumbau", "Gumbau, Chover, Rebollo, Remolar 2008: 1 to 5", gumbau);
   CLI::App* leaf_figures_app =
@@ -431,7 +438,7 @@ int run(int argc, char** argv) {
             help);
   if (*figures_app && figures_app->get_subcommands().empty())
     throw Error("figures", "no paper is named",
-                "use luft, gumbau, leaf, grass or sky; see verdure figures --help");
+                "use luft, npr, gumbau, leaf, grass or sky; see verdure figures --help");
   if (*report_app && report_app->get_subcommands().empty())
     throw Error("report", "nothing is named", "use fidelity or motion; see verdure report --help");
   if (*leaf_app && leaf_app->get_subcommands().empty())
@@ -466,6 +473,7 @@ int run(int argc, char** argv) {
   if (*compare_app) return runCompare(compare);
   if (*sky_app) runSky(sky);
   if (*luft_app) runLuftFigures(luft);
+  if (*npr_app) runNprFigures(npr);
   if (*gumbau_app) runGumbauFigures(gumbau);
   if (*leaf_figures_app) runLeafFigures(leaf_figures);
   if (*grass_figures_app) runGrassFigures(grass_figures);

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/style_names.h"
 #include "app/video.h"
 #include "base/files.h"
 #include "base/progress.h"
@@ -219,9 +220,7 @@ struct ShownPlant {
     // The file's own bake, or one made now; a light without baked terms needs neither.
     if (!command.bake_again) light = lightOfFile(plant);
     const bool visible_terms = view.terms.ambient_source == AmbientSource::kLeafVisibility;
-    const bool baked_terms = view.terms.normal == NormalSource::kCrown || visible_terms ||
-                             view.terms.ambient_source == AmbientSource::kBaked;
-    if (!light && baked_terms) {
+    if (!light && (needsBake(view) || visible_terms)) {
       progress.show("baking");
       if (field == BakeField::kMetaball) {
         DensityBake bake = bakeDensity(plant, command.bake.checked());
@@ -234,7 +233,7 @@ struct ShownPlant {
       }
     }
     if (visible_terms) bake_seconds += addLeafVisibility(plant, progress, *light);
-    if (view.terms.normal == NormalSource::kLeaf) restoreLeafNormals(plant);
+    if (needsLeafNormals(view)) restoreLeafNormals(plant);
     if (view.wind.speed > 0.0f) {
       progress.show("motion");
       motion = motionFor(plant);
@@ -285,6 +284,8 @@ void runRender(const RenderCommand& command) {
                   "choose auto or 1 to 4");
     view.shadow_cascades = command.cascades[0] - '0';
   }
+  view.style = parseStyle(command.style);
+  view.style_normals = parseStyleNormals(command.style_normals);
   command.bake.fieldOr(BakeField::kOpticalDepth);  // what is wrong is said before long work
   command.bake.checked();
   command.bake.checkedDepth();
@@ -299,6 +300,8 @@ void runRender(const RenderCommand& command) {
   view.seconds = command.wind.time.value_or(0.0);
   if (!command.motion_vectors.empty()) checkOutput(command.motion_vectors, {".exr"});
   view.hdr = std::filesystem::path(command.output).extension() == ".exr";
+  if (view.hdr && view.style != Style::kPhoto)
+    throw Error(command.output, "a drawn style has no light to write", "use .png");
 
   Progress progress("render");
   progress.show("device");

@@ -11,6 +11,7 @@
 #include "shared/sh.h"
 #include "shared/sky.h"
 #include "shared/sky_formula.h"
+#include "shared/style.h"
 #include "shared/sway.h"
 #include "shared/tone.h"
 
@@ -45,8 +46,11 @@ struct SharedResults {
   vec4 facing;     // squares of ribbonNormal / 32, wangPlace
   vec4 upright;    // meanFacing, sunThroughGrass
   vec4 terrain;    // drawnPlace / 100, bilinearHeight, rowFarthestFirst / 16
+  vec4 strokes;    // firstDifference, secondDifference, profileStrength, creaseStrength
+  vec4 tones;      // evenTone, lightness, blurredDepthTest, placeNoise
+  vec4 layers;     // throughPigment, pigmentAtBorder times granulated
 };
-SHARED_SIZE(SharedResults, 400);
+SHARED_SIZE(SharedResults, 448);
 
 SHARED_FUNCTION SharedResults evaluateShared(vec4 a, vec4 b) {
   vec3 n = normalize(vec3(a.x - 0.5f, a.y - 0.5f, a.z - 0.45f));
@@ -177,6 +181,18 @@ SHARED_FUNCTION SharedResults evaluateShared(vec4 a, vec4 b) {
   TerrainCell cell = terrainCell(100.0f * vec2(b.y, b.w), vec2(20.0f), vec2(3.0f), uvec2(17u, 9u));
   r.terrain = vec4(drawn.x / 100.0f, drawn.y / 100.0f, bilinearHeight(a, cell.share),
                    float(rowFarthestFirst(uint(15.99f * a.z), 16u, 20.0f * b.x - 2.0f)) / 16.0f);
+  float depths[9];
+  for (int i = 0; i < 9; ++i) {
+    depths[i] = 0.3f + 0.05f * a.x * float(i % 3) + (i > 5 ? 0.1f * a.y : 0.0f) + 0.02f * b[i % 4];
+  }
+  float first = firstDifference(depths), second = secondDifference(depths);
+  r.strokes = vec4(first, second, profileStrength(first, second, depths[4]),
+                   creaseStrength(first, second, depths[4], 0.01f));
+  r.tones = vec4(evenTone(a.x, 0.02f + 0.1f * a.y, vec2(0.4f, 0.7f), vec3(0.3f, 0.6f, 1.0f)),
+                 lightness(a.z, 0.5f + b.x), blurredDepthTest(0.2f + a.w, 0.2f + b.w, 0.3f),
+                 placeNoise(30.0f * n, 0.05f + 4.0f * b.y));
+  r.layers = vec4(throughPigment(color, 2.0f * b.x),
+                  pigmentAtBorder(4.0f * a.x, 2.0f) * granulated(b.y, 0.6f));
   return r;
 }
 

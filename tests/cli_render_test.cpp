@@ -225,6 +225,8 @@ TEST_F(CommandLineRender, Refuses) {
     expectRefused(command, said);
   };
   refused({"--shadows", "soft"}, {"--shadows", "'soft'", "ordered"});
+  refused({"--style", "oil"}, {"--style: 'oil' is unknown; use photo, edges, toon, watercolour"});
+  refused({"--style-normals", "bent"}, {"--style-normals: 'bent' is unknown; use raw, realigned"});
   refused({"--light", "candle"}, {"\"candle\"", "standard, expressive"});
   for (const char* terms : {"glow", "ambient,glow"})
     refused({"--terms", terms}, {"--terms: 'glow'"});
@@ -288,8 +290,50 @@ TEST_F(CommandLineRender, Refuses) {
   expectRefused({"figures", "luft", "--size", "0x5", "-o", path("figures")}, {"--size"});
   expectRefused({"figures", "luft", "--species", "triffid", "-o", path("figures")}, {"triffid"});
   expectRefused({"figures", "luft", "-o", tree}, {"the folder cannot be made", "-o"});
+  expectRefused({"render", tree, "-o", path("out.exr"), "--style", "toon"},
+                {"out.exr: a drawn style has no light to write; use .png"});
+  expectRefused({"figures", "npr", "--size", "0x5", "-o", path("figures")}, {"--size"});
+  expectRefused({"figures", "npr", "--species", "triffid", "-o", path("figures")}, {"triffid"});
   expectRefused({"figures", "gumbau", "--size", "0x5", "-o", path("figures")}, {"--size"});
   expectRefused({"figures", "gumbau", "--species", "triffid", "-o", path("figures")}, {"triffid"});
+}
+
+TEST_F(CommandLineRender, DrawnStyles) {
+  const std::string tree = smallTree("tree.glb", 3);
+  Json plain_report, raw_report, scaled_report;
+  const Image photo = picture(tree, {}, &plain_report);
+  EXPECT_EQ(picture(tree, {"--style", "photo", "--style-normals", "raw"}).rgba, photo.rgba);
+  std::vector<Image> pictures{photo};
+  for (const char* style : {"edges", "toon", "watercolour", "normals"}) {
+    pictures.push_back(picture(tree, {"--style", style}, &scaled_report));
+    EXPECT_GT(scaled_report["bake_seconds"], 0.0);
+    // Raw normals need no bake.
+    pictures.push_back(picture(tree, {"--style", style, "--style-normals", "raw"}, &raw_report));
+    EXPECT_EQ(raw_report["bake_seconds"], 0.0);
+    EXPECT_EQ(raw_report["validation_messages"], 0);
+  }
+  for (std::size_t i = 0; i < pictures.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k) EXPECT_GT(difference(pictures[i], pictures[k]), 0.2);
+  EXPECT_EQ(picture(tree, {"--style", "watercolor"}).rgba, pictures[5].rgba);
+  // Films, and motion vectors.
+  runWell({"render", tree, "-o", path("clip.png"), "--size", "96x72", "--shadow-map", "256",
+           "--style", "toon", "--frames", "0:1", "--wind", "18"});
+  EXPECT_GT(difference(readImage(path("clip-0000.png")), readImage(path("clip-0001.png"))), 0.05);
+  picture(tree, {"--style", "edges", "--time", "3", "--motion-vectors", path("way.exr")});
+  EXPECT_GT(std::filesystem::file_size(path("way.exr")), 1000u);
+}
+
+TEST_F(CommandLineRender, FiguresOfDrawnStyles) {
+  runWell({"figures", "npr", "--species", "scots-pine", "--size", "64x64", "-o", path("npr")});
+  const std::string page = textOf(path("npr/index.html"));
+  for (const char* name : {"figure7-normals-a", "figure7-edges-c", "toon-b", "watercolour-c",
+                           "figure8-hedge-edges", "figure8-group-watercolour"}) {
+    EXPECT_NE(page.find("'" + std::string(name) + ".png'"), std::string::npos) << name;
+    EXPECT_EQ(readImage(path("npr/" + std::string(name) + ".png")).width, 64);
+  }
+  EXPECT_GT(difference(readImage(path("npr/figure7-edges-a.png")),
+                       readImage(path("npr/figure7-edges-c.png"))),
+            1.0);
 }
 
 TEST_F(CommandLineRender, MovesInWind) {

@@ -269,7 +269,9 @@ TEST_F(Styles, AreSilentUnderValidationAndLeaveThePhotoAsItWas) {
     again.style = style;
     renderer().render(again);
   }
-  const Terrain hills = makeHills(glm::vec2(60.0f), {0.0f, 3.0f}, 2);
+  TerrainGrowOptions rolling;
+  rolling.samples = 33;
+  const Terrain hills = growTerrain(rolling);
   scene.terrain = &hills;
   renderer().setScene(scene);
   again.daylight = Daylight{uniformSky(glm::vec3(2.0f)), {}};

@@ -13,18 +13,22 @@
 namespace verdure {
 namespace {
 
+/// Even directions on the sphere: a Fibonacci lattice.
+constexpr int kDirections = 256;
+glm::vec3 evenDirection(std::size_t d) {
+  const float y = 1.0f - (2.0f * static_cast<float>(d) + 1.0f) / kDirections;
+  const float turn = glm::two_pi<float>() * 0.61803399f * static_cast<float>(d);
+  const float ring = std::sqrt(1.0f - y * y);
+  return {ring * std::cos(turn), y, ring * std::sin(turn)};
+}
+
 /// The vertices of a plant that lie farthest in each of many directions: what a camera must show so
 /// that it shows all (to about 1 % of the size).
 std::vector<glm::vec3> outermostVertices(const Plant& plant) {
-  constexpr int kDirections = 256;
   std::vector<glm::vec3> outermost(kDirections);
   std::vector<float> reach(kDirections, std::numeric_limits<float>::lowest());
   parallelFor(kDirections, 8, [&](std::size_t d) {
-    // Fibonacci lattice on the sphere.
-    const float y = 1.0f - (2.0f * static_cast<float>(d) + 1.0f) / kDirections;
-    const float turn = glm::two_pi<float>() * 0.61803399f * static_cast<float>(d);
-    const float ring = std::sqrt(1.0f - y * y);
-    const glm::vec3 direction(ring * std::cos(turn), y, ring * std::sin(turn));
+    const glm::vec3 direction = evenDirection(d);
     for (const Mesh& mesh : plant.meshes)
       for (const glm::vec3& p : mesh.positions)
         if (const float along = glm::dot(p, direction); along > reach[d]) {
@@ -34,6 +38,48 @@ std::vector<glm::vec3> outermostVertices(const Plant& plant) {
   });
   if (vertexCount(plant) == 0) outermost.clear();
   return outermost;
+}
+
+/// The same of a forest: of those of its plants that, as spheres, reach farthest.
+void addOutermost(const Forest& forest, std::vector<glm::vec3>& points) {
+  struct Ball {
+    glm::vec3 center{0.0f};
+    float radius = 0.0f;
+    std::vector<glm::vec3> outermost;
+  };
+  std::vector<Ball> balls;
+  for (const ForestKind& kind : forest.kinds) {
+    if (kind.plant == nullptr)
+      throw Error("forest", "a kind has no plant", "set ForestKind::plant");
+    const Bounds box = bounds(*kind.plant);
+    balls.push_back({box.center(), 0.5f * glm::length(box.size()), outermostVertices(*kind.plant)});
+  }
+  for (const Placement& place : forest.places)
+    if (place.plant >= balls.size())
+      throw Error("forest", "a place has no kind", "set Forest::kinds");
+  std::vector<std::size_t> farthest(kDirections);
+  parallelFor(kDirections, 8, [&](std::size_t d) {
+    const glm::vec3 direction = evenDirection(d);
+    float reach = std::numeric_limits<float>::lowest();
+    for (std::size_t i = 0; i < forest.places.size(); ++i) {
+      const Placement& place = forest.places[i];
+      const Ball& ball = balls[place.plant];
+      // Turned about the vertical, a crown stays above its foot: that is near enough.
+      const glm::vec3 center = place.position + glm::vec3(0, place.scale * ball.center.y, 0);
+      const float along = glm::dot(center, direction) + place.scale * ball.radius;
+      if (along > reach) {
+        reach = along;
+        farthest[d] = i;
+      }
+    }
+  });
+  std::sort(farthest.begin(), farthest.end());
+  farthest.erase(std::unique(farthest.begin(), farthest.end()), farthest.end());
+  for (const std::size_t i : farthest) {
+    const glm::mat4 world = matrixOf(forest.places[i]);
+    for (const glm::vec3& p : balls[forest.places[i].plant].outermost)
+      points.emplace_back(world * glm::vec4(p, 1.0f));
+  }
 }
 
 std::vector<glm::vec3> outermostPoints(const Scene& scene) {
@@ -48,6 +94,7 @@ std::vector<glm::vec3> outermostPoints(const Scene& scene) {
       for (const glm::vec3& p : entry->second) points.emplace_back(world * glm::vec4(p, 1.0f));
     }
   }
+  if (scene.forest != nullptr && !scene.forest->places.empty()) addOutermost(*scene.forest, points);
   return points;
 }
 

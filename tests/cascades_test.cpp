@@ -369,8 +369,7 @@ class Walk {
   Walk() : device_("", true), drawer_(device_) {
     const Plant tree = ballTree(80, 0.5f);
     const Scene scene = avenue(tree);
-    scene_.emplace(device_, packScene(scene), *drawer_.layout().material_set,
-                   drawer_.transferLayout(), drawer_.motionLayouts(), drawer_.grassLayout());
+    scene_.emplace(device_, packScene(scene), drawer_.sceneLayouts());
   }
   ~Walk() { EXPECT_EQ(device_.validationMessages(), 0); }
 

@@ -46,8 +46,7 @@ class Meadow {
     layer.most_slices = 256;
     layer.middle = layer.medium = layer.blades = false;
     scene.grass = {layer};
-    GpuScene packed(device_, packScene(scene), *drawer_.layout().material_set,
-                    drawer_.transferLayout(), drawer_.motionLayouts(), drawer_.grassLayout());
+    GpuScene packed(device_, packScene(scene), drawer_.sceneLayouts());
     drawer_.forgetScene();
     drawer_.tryBillboards(trial);
     return drawer_.draw(packed, view_).image;

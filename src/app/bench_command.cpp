@@ -74,9 +74,7 @@ class GrassBench {
     layer.middle = layer.blades = false;
     Scene scene;
     scene.grass = {layer};
-    return std::make_unique<GpuScene>(device_, packScene(scene), *drawer_.layout().material_set,
-                                      drawer_.transferLayout(), drawer_.motionLayouts(),
-                                      drawer_.grassLayout());
+    return std::make_unique<GpuScene>(device_, packScene(scene), drawer_.sceneLayouts());
   }
 
   /// In turns: a machine that is slow for a while is so for all.

@@ -43,6 +43,8 @@ std::string unfit(const vk::raii::PhysicalDevice& physical, bool window) {
   const auto& v13 = features.get<vk::PhysicalDeviceVulkan13Features>();
   if (!v13.dynamicRendering || !v13.synchronization2)
     return "lacks dynamic rendering or synchronization2";
+  if (!physical.getFeatures().drawIndirectFirstInstance)
+    return "lacks a first instance of indirect draws";
   if (window && !hasSwapchains(physical)) return "shows nothing in windows";
   return "";
 }
@@ -110,6 +112,7 @@ Device::Device(const std::string& name, bool validation, const WindowSurface* wi
       .queueFamilyIndex = family_, .queueCount = 1, .pQueuePriorities = &priority};
   const vk::PhysicalDeviceFeatures available = physical_.getFeatures();
   const vk::PhysicalDeviceFeatures features{.fullDrawIndexUint32 = available.fullDrawIndexUint32,
+                                            .drawIndirectFirstInstance = true,
                                             .samplerAnisotropy = available.samplerAnisotropy};
   // Software drivers walk every texel of a footprint: minutes for ground seen at a grazing angle.
   const bool software = physical_.getProperties().deviceType == vk::PhysicalDeviceType::eCpu;

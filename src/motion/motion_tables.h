@@ -43,9 +43,6 @@ struct MotionTables {
 /// unless wind and time are what they should be.
 shared::MotionMoment momentOf(const Wind& wind, double seconds, float extent);
 
-/// What keeps the plant at the scene's `instance`-th place out of unison with the others.
-glm::uvec2 motionPhase(std::uint32_t instance);
-
 /// Bilinear, as the shaders read it.
 glm::vec2 readMotion(const std::uint32_t* texels, const glm::uvec2& size, const glm::vec2& uv);
 

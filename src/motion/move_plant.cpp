@@ -5,7 +5,6 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
-#include "base/random.h"
 #include "motion/motion_tables.h"
 #include "motion/motion_texture.h"
 #include "verdure/error.h"
@@ -68,12 +67,6 @@ shared::MotionMoment momentOf(const Wind& wind, double seconds, float extent) {
   return moment;
 }
 
-glm::uvec2 motionPhase(std::uint32_t instance) {
-  if (instance == 0) return glm::uvec2(0);
-  const std::uint64_t bits = hash(instance);
-  return {static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32)};
-}
-
 glm::vec2 readMotion(const std::uint32_t* texels, const glm::uvec2& size, const glm::vec2& uv) {
   const shared::MotionTexels at = shared::motionTexels(uv, size);
   const auto read = [&](std::uint32_t x, std::uint32_t y) {
@@ -91,7 +84,7 @@ std::vector<glm::vec2> branchAmplitudes(const PlantMotion& motion, const Wind& w
   const shared::MotionMoment moment = momentOf(wind, seconds, tables.wind_extent);
   const MotionTime time = motionTime(seconds);
   const LocalWind local = localWind(moment, place.world_from_plant);
-  const glm::uvec2 phase = motionPhase(place.instance);
+  const glm::uvec2 phase = shared::motionPhase(place.instance);
   std::vector<glm::vec2> amplitudes(tables.beams.size());
   parallelFor(amplitudes.size(), 1 << 12, [&](std::size_t b) {
     const shared::MotionDrive& drive = tables.drives[b];

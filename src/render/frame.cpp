@@ -68,8 +68,10 @@ FrameLayout::FrameLayout(const gpu::Device& device, vk::DescriptorSetLayout moti
 
 FrameDrawer::FrameDrawer(const gpu::Device& device)
     : device_(&device),
+      forest_pass_(device),
       motion_pass_(device),
       layout_(device, *motion_pass_.layouts().vertex.layout),
+      impostor_pass_(device, *layout_.frame_set.layout, forest_pass_.layouts()),
       transfer_pass_(device),
       shadow_pass_(),
       blocker_pass_(device),
@@ -181,7 +183,7 @@ std::vector<Cascade> FrameDrawer::cascadesOf(const GpuScene& scene, const View& 
       fitCascades({.camera = cascade_trial_.camera.value_or(view.camera),
                    .width = view.width,
                    .height = view.height,
-                   .bounds = scene.bounds(),
+                   .bounds = scene.casterBounds(view.camera.eye),
                    .to_sun = view.daylight.sun.direction,
                    .size = view.shadow_map_size,
                    .count = view.terms.shadow ? view.shadow_cascades : 1,
@@ -282,7 +284,9 @@ void FrameDrawer::recordColor(const vk::raii::CommandBuffer& commands, const Gpu
   beginColor(commands, view, true, !terrain || billboards);
   // The drawn styles draw plants themselves.
   if (view.style == Style::kPhoto)
-    plant_pass_.record(commands, layout_, *frame_set_, scene, view.terms);
+    plant_pass_.record(commands, layout_, *frame_set_, scene, view.terms, kind);
+  if (view.style == Style::kPhoto && scene.forest() != nullptr)
+    impostor_pass_.record(commands, *frame_set_, *scene.forest(), view.terms, kind);
   if (terrain && !billboards)
     grass_blades_.record(commands, *frame_set_, *scene.terrain(), view.terms, kind);
   backdrop_pass_.record(commands, layout_, *frame_set_, view.terms, kind,
@@ -375,7 +379,11 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view, const gpu::Texture* t
   if (!depth_maps) shadow_pass_.prepare(*device_, layout_, scene);
   if (depth_maps) light_depth_pass_.prepare(*device_, layout_, scene, view.terms);
   const bool photo = view.style == Style::kPhoto;
-  if (photo) plant_pass_.prepare(*device_, layout_, scene, view.terms);
+  if (photo) plant_pass_.prepare(*device_, layout_, scene, view.terms, kind);
+  if (scene.forest() != nullptr) {
+    scene.forest()->look(view, cascades);
+    impostor_pass_.prepare(view.terms, kind, depth_maps);
+  }
   if (!photo && !style_pass_)
     style_pass_.emplace(*device_, layout_, *motion_pass_.layouts().vertex.layout);
   if (!photo) style_pass_->prepare(scene, view, targets_->depth, uniforms.ground.z);
@@ -392,6 +400,7 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view, const gpu::Texture* t
   device_->submit([&](const vk::raii::CommandBuffer& commands) {
     timers_.reset(commands);
     timers_.stamp(commands, 0);
+    if (scene.forest() != nullptr) forest_pass_.record(commands, *scene.forest());
     if (scene.moves())
       motion_pass_.record(commands, scene.motion(), view.wind, view.seconds, false);
     if (scene.moves() && view.last)
@@ -403,10 +412,10 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view, const gpu::Texture* t
     const auto cascade_count = static_cast<std::uint32_t>(cascades.size());
     if (depth_maps) {
       light_depth_pass_.record(commands, layout_, *frame_set_, scene, *shadow_maps_, *foliage_maps_,
-                               cascade_count, view.terms);
+                               impostor_pass_, cascade_count, view.terms);
     } else {
-      shadow_pass_.record(commands, layout_, *frame_set_, scene, *shadow_maps_, cascade_count,
-                          view.terms.shadow);
+      shadow_pass_.record(commands, layout_, *frame_set_, scene, *shadow_maps_, impostor_pass_,
+                          cascade_count, view.terms.shadow);
       gpu::imageBarrier(commands, *foliage_maps_->image, kColorAspect, gpu::Use::kUndefined,
                         gpu::Use::kFragmentSampled);
     }

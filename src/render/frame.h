@@ -15,6 +15,7 @@
 #include "render/grass_blades.h"
 #include "render/grass_pass.h"
 #include "render/ground_light.h"
+#include "render/impostor_pass.h"
 #include "render/light_depth_pass.h"
 #include "render/motion_pass.h"
 #include "render/plant_pass.h"
@@ -33,9 +34,10 @@ class FrameDrawer {
  public:
   explicit FrameDrawer(const gpu::Device& device);
   const FrameLayout& layout() const { return layout_; }
-  const MotionLayouts& motionLayouts() const { return motion_pass_.layouts(); }
-  const gpu::SetLayout& grassLayout() const { return grass_pass_.setLayout(); }
-  const gpu::SetLayout& transferLayout() const { return transfer_pass_.setLayout(); }
+  SceneLayouts sceneLayouts() const {
+    return {*layout_.material_set, transfer_pass_.setLayout(), motion_pass_.layouts(),
+            grass_pass_.setLayout(), forest_pass_.layouts()};
+  }
   /// The next frame shows another scene.
   void forgetScene() {
     ++scene_id_;
@@ -74,8 +76,10 @@ class FrameDrawer {
   void recordTone(const vk::raii::CommandBuffer& commands, const View& view, float units) const;
 
   const gpu::Device* device_;
+  ForestPass forest_pass_;
   MotionPass motion_pass_;
   FrameLayout layout_;
+  ImpostorPass impostor_pass_;
   TransferPass transfer_pass_;
   ShadowPass shadow_pass_;
   LightDepthPass light_depth_pass_;

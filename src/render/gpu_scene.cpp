@@ -5,9 +5,7 @@
 
 namespace verdure {
 
-GpuScene::GpuScene(const gpu::Device& device, PackedScene packed,
-                   vk::DescriptorSetLayout material_layout, const gpu::SetLayout& transfer_layout,
-                   const MotionLayouts& motion_layouts, const gpu::SetLayout& grass_layout)
+GpuScene::GpuScene(const gpu::Device& device, PackedScene packed, const SceneLayouts& layouts)
     : has_crown_normals_(!packed.crown_normals.empty()),
       moving_items_(packed.motions.items),
       places_(packed.instances),
@@ -30,8 +28,19 @@ GpuScene::GpuScene(const gpu::Device& device, PackedScene packed,
   instances_ = upload.buffer(std::span(std::as_const(packed.instances)),
                              Usage::eVertexBuffer | Usage::eStorageBuffer);
   indices_ = upload.buffer(std::span(std::as_const(packed.indices)), Usage::eIndexBuffer);
-  transfer_.emplace(device, upload, packed.transfers, packed.positions.size(), transfer_layout);
-  motion_.emplace(device, upload, packed.motions, instances_, motion_layouts);
+  transfer_.emplace(device, upload, packed.transfers, packed.positions.size(), layouts.transfer);
+  any_items_ = std::any_of(draws_.begin(), draws_.end(),
+                           [](const Draw& draw) { return !draw.forest.has_value(); });
+  if (packed.forest) {
+    std::vector<vk::DrawIndexedIndirectCommand> trees;
+    for (const Draw& draw : draws_)
+      if (draw.forest)
+        trees.push_back({.indexCount = draw.index_count,
+                         .firstIndex = draw.first_index,
+                         .vertexOffset = draw.vertex_offset});
+    forest_.emplace(device, upload, std::move(*packed.forest), trees, layouts.forest);
+  }
+  motion_.emplace(device, upload, packed.motions, instances_, forest(), layouts.motion);
   for (Draw& draw : draws_) {
     can_move_.push_back(draw.moving);
     draw.moving = false;
@@ -44,7 +53,7 @@ GpuScene::GpuScene(const gpu::Device& device, PackedScene packed,
     leaf_arrays_.push_back(upload.textureArray(
         leaf.layers, leaf.linear ? vk::Format::eR8G8B8A8Unorm : vk::Format::eR8G8B8A8Srgb));
   upload.finish();
-  if (packed.terrain) terrain_.emplace(device, std::move(*packed.terrain), grass_layout);
+  if (packed.terrain) terrain_.emplace(device, std::move(*packed.terrain), layouts.grass);
 
   for (int clamp = 0; clamp < 4; ++clamp) {
     const auto mode = [](bool edge) {
@@ -70,11 +79,11 @@ GpuScene::GpuScene(const gpu::Device& device, PackedScene packed,
        .maxSets = count,
        .poolSizeCount = 1,
        .pPoolSizes = &size});
-  const std::vector<vk::DescriptorSetLayout> layouts(count, material_layout);
+  const std::vector<vk::DescriptorSetLayout> set_layouts(count, layouts.material);
   material_sets_ = vk::raii::DescriptorSets(
-      device.raii(),
-      vk::DescriptorSetAllocateInfo{
-          .descriptorPool = *pool_, .descriptorSetCount = count, .pSetLayouts = layouts.data()});
+      device.raii(), vk::DescriptorSetAllocateInfo{.descriptorPool = *pool_,
+                                                   .descriptorSetCount = count,
+                                                   .pSetLayouts = set_layouts.data()});
   for (std::uint32_t i = 0; i < count; ++i) {
     const MaterialSlot& slot = packed.materials[i];
     const auto describe = [&](const gpu::Texture& texture, const std::array<bool, 2>& clamp) {
@@ -131,6 +140,7 @@ void GpuScene::setWind(const Wind& wind, const std::optional<Wind>& last) {
     strongest.gusts = std::max(wind.gusts, last->gusts);
   }
   const bool blows = strongest.speed > 0.0f && !moving_items_.empty();
+  if (forest_) forest_->setWind(blows ? std::optional(strongest) : std::nullopt);
   for (std::size_t i = 0; i < draws_.size(); ++i) draws_[i].moving = blows && can_move_[i];
   if (!blows) {
     bounds_ = rest_bounds_;
@@ -149,6 +159,13 @@ void GpuScene::setWind(const Wind& wind, const std::optional<Wind>& last) {
   }
 }
 
+Bounds GpuScene::casterBounds(const glm::vec3& eye) const {
+  if (!forest_) return bounds_;
+  const Bounds trees = forest_->casterBounds(eye);
+  if (!any_items_) return trees;
+  return {glm::min(bounds_.min, trees.min), glm::max(bounds_.max, trees.max)};
+}
+
 void GpuScene::bindVertices(const vk::raii::CommandBuffer& commands, NormalSource normals) const {
   const bool crown = normals == NormalSource::kCrown && has_crown_normals_;
   const gpu::Buffer& normal_stream = crown ? crown_normals_ : leaf_normals_;
@@ -160,12 +177,18 @@ void GpuScene::bindVertices(const vk::raii::CommandBuffer& commands, NormalSourc
 }
 
 void GpuScene::record(const vk::raii::CommandBuffer& commands, vk::PipelineLayout layout,
-                      vk::DescriptorSet frame_set, const Draw& draw) const {
+                      vk::DescriptorSet frame_set, const Draw& draw, std::uint32_t view) const {
   commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, layout, 0,
                               {frame_set, *material_sets_[draw.material], motion_->vertexSet()},
                               nullptr);
   commands.pushConstants<shared::DrawUniforms>(layout, vk::ShaderStageFlagBits::eFragment, 0,
                                                draw.uniforms);
+  if (draw.forest) {
+    commands.bindVertexBuffers(3, forest_->seats(), forest_->seatOffset(view));
+    forest_->draw(commands, *draw.forest, view);
+    commands.bindVertexBuffers(3, *instances_.buffer, vk::DeviceSize{0});
+    return;
+  }
   commands.drawIndexed(draw.index_count, draw.instance_count, draw.first_index, draw.vertex_offset,
                        draw.first_instance);
 }

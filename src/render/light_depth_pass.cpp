@@ -53,7 +53,8 @@ void LightDepthPass::prepare(const gpu::Device& device, const FrameLayout& layou
 void LightDepthPass::record(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,
                             vk::DescriptorSet frame_set, const GpuScene& scene,
                             const gpu::Texture& wood_maps, const gpu::Texture& foliage_maps,
-                            std::uint32_t count, const Terms& terms) const {
+                            const ImpostorPass& impostors, std::uint32_t count,
+                            const Terms& terms) const {
   const vk::ImageAspectFlags depth_aspect = vk::ImageAspectFlagBits::eDepth;
   const vk::ImageAspectFlags color_aspect = vk::ImageAspectFlagBits::eColor;
   gpu::imageBarrier(commands, *wood_maps.image, depth_aspect, gpu::Use::kUndefined,
@@ -84,6 +85,8 @@ void LightDepthPass::record(const vk::raii::CommandBuffer& commands, const Frame
                                          .maxDepth = 1.0f});
     commands.setScissor(0, area);
     if (terms.shadow) drawCasters(commands, layout, frame_set, scene, cascade, terms);
+    if (terms.shadow && scene.forest() != nullptr)
+      impostors.recordShadows(commands, frame_set, *scene.forest(), cascade, true);
     commands.endRendering();
   }
   gpu::imageBarrier(commands, *wood_maps.image, depth_aspect, gpu::Use::kDepthAttachment,
@@ -102,7 +105,7 @@ void LightDepthPass::drawCasters(const vk::raii::CommandBuffer& commands, const 
   for (const Draw& draw : scene.draws()) {  // wood comes first
     commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
                           *pipelines_.at(constantsOf(draw, terms)));
-    scene.record(commands, *layout.pipeline, frame_set, draw);
+    scene.record(commands, *layout.pipeline, frame_set, draw, cascade + 1);
   }
 }
 

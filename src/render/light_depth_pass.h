@@ -4,6 +4,7 @@
 #include <map>
 
 #include "render/frame_layout.h"
+#include "render/impostor_pass.h"
 #include "render/scene.h"
 
 namespace verdure {
@@ -20,7 +21,8 @@ class LightDepthPass {
   /// empty.
   void record(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,
               vk::DescriptorSet frame_set, const GpuScene& scene, const gpu::Texture& wood_maps,
-              const gpu::Texture& foliage_maps, std::uint32_t count, const Terms& terms) const;
+              const gpu::Texture& foliage_maps, const ImpostorPass& impostors, std::uint32_t count,
+              const Terms& terms) const;
 
  private:
   void drawCasters(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "motion/motion_texture.h"
+#include "render/gpu_forest.h"
 #include "verdure/error.h"
 
 namespace verdure {
@@ -33,8 +34,8 @@ MotionLayouts::MotionLayouts(const gpu::Device& device)
              vk::ShaderStageFlagBits::eVertex) {}
 
 GpuMotion::GpuMotion(const gpu::Device& device, gpu::Upload& upload, const PackedMotions& packed,
-                     const gpu::Buffer& instances, const MotionLayouts& layouts)
-    : items_(packed.items), instances_(*instances.buffer) {
+                     const gpu::Buffer& instances, GpuForest* forest, const MotionLayouts& layouts)
+    : items_(packed.items), instances_(*instances.buffer), forest_(forest) {
   constexpr auto kStorage = vk::BufferUsageFlagBits::eStorageBuffer;
   const auto stored = [&upload](const auto& data) {
     return upload.buffer(std::span(data), kStorage);
@@ -70,11 +71,12 @@ GpuMotion::GpuMotion(const gpu::Device& device, gpu::Upload& upload, const Packe
       std::uint32_t binding = 0;
       for (const gpu::Buffer* buffer :
            {&std::as_const(beams_), &std::as_const(drives_), &std::as_const(leaves_),
-            &std::as_const(texels_.back()), &instances, &std::as_const(amplitudes_[slot]),
-            &std::as_const(turns_[slot])})
+            &std::as_const(texels_.back()), item.forest_kind ? &forest->seatBuffer() : &instances,
+            &std::as_const(amplitudes_[slot]), &std::as_const(turns_[slot])})
         set.setBuffer(binding++, *buffer);
     }
   }
+  if (forest != nullptr) forest->setMotion(packed, beams_, drives_, texels_);
   vertex_set_.emplace(device, layouts.vertex);
   std::uint32_t binding = 0;
   for (const gpu::Buffer* buffer :
@@ -112,7 +114,7 @@ void MotionPass::record(const vk::raii::CommandBuffer& commands, const GpuMotion
   for (std::size_t i = 0; i < motion.items_.size(); ++i) {
     const PackedMotion& item = motion.items_[i];
     const auto run = [&](const vk::raii::Pipeline& pipeline, std::size_t count, std::uint32_t first,
-                         std::uint32_t out_base) {
+                         std::uint32_t out_base, vk::DeviceSize command) {
       if (count == 0) return;
       const shared::MotionJob job{
           .moment = momentOf(wind, seconds, item.tables->wind_extent),
@@ -129,10 +131,15 @@ void MotionPass::record(const vk::raii::CommandBuffer& commands, const GpuMotion
                                   {*motion.job_sets_[slot][i]}, nullptr);
       commands.pushConstants<shared::MotionJob>(*layout_, vk::ShaderStageFlagBits::eCompute, 0,
                                                 job);
-      commands.dispatch((job.count + kGroupSize - 1) / kGroupSize, item.places, 1);
+      if (item.forest_kind)
+        commands.dispatchIndirect(*motion.forest_->commandBuffer().buffer,
+                                  motion.forest_->motionCommand(*item.forest_kind) + command);
+      else
+        commands.dispatch((job.count + kGroupSize - 1) / kGroupSize, item.places, 1);
     };
-    run(branches_, item.tables->beams.size(), item.first_beam, item.amplitude_base);
-    run(leaves_, item.tables->leaves.size(), item.first_leaf, item.turn_base);
+    run(branches_, item.tables->beams.size(), item.first_beam, item.amplitude_base, 0);
+    run(leaves_, item.tables->leaves.size(), item.first_leaf, item.turn_base,
+        sizeof(vk::DispatchIndirectCommand));
   }
   for (const gpu::Buffer* results : {&motion.amplitudes_[slot], &motion.turns_[slot]})
     turn(*results, gpu::Use::kComputeStorage, gpu::Use::kVertexStorage);

@@ -17,13 +17,16 @@ struct MotionLayouts {
   gpu::SetLayout job, vertex;
 };
 
+class GpuForest;
+
 /// What moves of a scene, on the GPU, and how far it is bent in this frame and in the last one.
 class GpuMotion {
  public:
   /// `instances`: the scene's places, 64 bytes each. Throws Error where the device's storage
   /// buffers are too small.
+  /// `forest`: null, or that of the scene.
   GpuMotion(const gpu::Device& device, gpu::Upload& upload, const PackedMotions& packed,
-            const gpu::Buffer& instances, const MotionLayouts& layouts);
+            const gpu::Buffer& instances, GpuForest* forest, const MotionLayouts& layouts);
   /// For set 2 of the pipelines that draw plants.
   vk::DescriptorSet vertexSet() const { return **vertex_set_; }
 
@@ -31,6 +34,7 @@ class GpuMotion {
   friend class MotionPass;
   std::vector<PackedMotion> items_;
   vk::Buffer instances_;
+  const GpuForest* forest_ = nullptr;
   gpu::Buffer beams_, drives_, leaves_, hangs_;
   std::vector<gpu::Buffer> texels_;                          ///< of each item: levels, then wind
   std::array<gpu::Buffer, 2> amplitudes_, turns_;            ///< of this frame, of the last

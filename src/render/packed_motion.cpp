@@ -35,15 +35,11 @@ std::uint32_t donorOf(std::uint32_t k, std::uint32_t count,
 
 }  // namespace
 
-std::vector<glm::uvec4> PackedMotions::add(const PlantMotion& motion, std::uint32_t first_instance,
-                                           std::span<const Rows> seats_of_item, std::size_t words) {
-  const auto instances = static_cast<std::uint32_t>(seats_of_item.size());
+PackedMotion PackedMotions::append(const PlantMotion& motion) {
   const MotionTables& tables = *motion.tables;
   PackedMotion item{motion.tables};
   item.first_beam = static_cast<std::uint32_t>(beams.size());
   item.first_leaf = static_cast<std::uint32_t>(leaves.size());
-  item.first_instance = first_instance;
-  item.instances = instances;
   const auto offset = [](std::uint32_t& index, std::uint32_t by) {
     if (index != shared::kHangsOnNothing) index += by;
   };
@@ -56,24 +52,50 @@ std::vector<glm::uvec4> PackedMotions::add(const PlantMotion& motion, std::uint3
     offset(leaf.beam, item.first_beam);
     leaves.push_back(leaf);
   }
+  item.amplitude_base = amplitudes;
+  item.turn_base = turns;
+  return item;
+}
+
+const PackedMotion& PackedMotions::addForest(const PlantMotion& motion, std::uint32_t kind,
+                                             std::uint32_t first_seat, std::uint32_t seats) {
+  PackedMotion item = append(motion);
+  item.first_instance = first_seat;
+  item.places = seats;
+  item.forest_kind = kind;
+  amplitudes += seats * static_cast<std::uint32_t>(motion.tables->beams.size());
+  turns += seats * static_cast<std::uint32_t>(motion.tables->leaves.size());
+  items.push_back(std::move(item));
+  return items.back();
+}
+
+std::size_t PackedMotions::motionWords(const PlantMotion& motion) {
+  return std::max<std::size_t>(2 * motion.tables->beams.size() + motion.tables->leaves.size(), 1);
+}
+
+std::vector<glm::uvec4> PackedMotions::add(const PlantMotion& motion, std::uint32_t first_instance,
+                                           std::span<const Rows> seats_of_item, std::size_t words) {
+  const auto instances = static_cast<std::uint32_t>(seats_of_item.size());
+  const MotionTables& tables = *motion.tables;
+  PackedMotion item = append(motion);
+  item.first_instance = first_instance;
+  item.instances = instances;
   const auto beam_count = static_cast<std::uint32_t>(tables.beams.size());
   const auto leaf_count = static_cast<std::uint32_t>(tables.leaves.size());
-  const std::size_t each = std::max<std::size_t>(2 * std::size_t{beam_count} + leaf_count, 1);
+  const std::size_t each = motionWords(motion);
   item.places = static_cast<std::uint32_t>(
       std::clamp<std::size_t>((words - std::min(words, 2 * std::size_t{amplitudes} + turns)) / each,
                               1, std::min(std::max(instances, 1u), 65535u)));
   if (instances == 0) item.places = 0;
-  item.amplitude_base = amplitudes;
-  item.turn_base = turns;
   amplitudes += item.places * beam_count;
   turns += item.places * leaf_count;
   std::vector<glm::uvec4> seats;
   for (std::uint32_t k = 0; k < instances; ++k) {
     const std::uint32_t place = donorOf(k, item.places, seats_of_item);
-    const glm::uvec2 phase = motionPhase(first_instance + place);
     // Indices count from the scene's first beam; unsigned numbers wrap.
     seats.emplace_back(item.amplitude_base + place * beam_count - item.first_beam,
-                       item.turn_base + place * leaf_count - item.first_leaf, phase.x, phase.y);
+                       item.turn_base + place * leaf_count - item.first_leaf,
+                       first_instance + place, 0u);
   }
   items.push_back(std::move(item));
   return seats;

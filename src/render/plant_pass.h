@@ -13,10 +13,12 @@ namespace verdure {
 class PlantPass {
  public:
   /// Makes the pipelines that the scene needs with these terms, once each; before recording.
+  /// `kind`: what the sky is drawn with.
   void prepare(const gpu::Device& device, const FrameLayout& layout, const GpuScene& scene,
-               const Terms& terms);
+               const Terms& terms, const DrawKind& kind);
   void record(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,
-              vk::DescriptorSet frame_set, const GpuScene& scene, const Terms& terms) const;
+              vk::DescriptorSet frame_set, const GpuScene& scene, const Terms& terms,
+              const DrawKind& kind) const;
 
  private:
   /// By whether there are transfer vectors, and the terms.

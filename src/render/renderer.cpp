@@ -105,9 +105,7 @@ void Renderer::setScene(const Scene& scene) {
   guarded(deviceName(), [&] {
     state_->scene.reset();
     state_->frames.forgetScene();
-    state_->scene.emplace(state_->device, std::move(packed), *state_->frames.layout().material_set,
-                          state_->frames.transferLayout(), state_->frames.motionLayouts(),
-                          state_->frames.grassLayout());
+    state_->scene.emplace(state_->device, std::move(packed), state_->frames.sceneLayouts());
   });
   state_->pack_ms = timer.seconds() * 1e3;
 }

@@ -21,6 +21,8 @@ namespace {
 constexpr std::size_t kTransferWords = std::size_t{1} << 24;
 /// As much for the motion of all plants.
 constexpr std::size_t kMotionWords = std::size_t{1} << 24;
+/// And twice that for a forest's.
+constexpr std::size_t kForestMotionWords = std::size_t{1} << 25;
 
 /// Alpha as a grey picture.
 Image alphaOf(const Image& image) {
@@ -46,14 +48,24 @@ class Packer {
   PackedScene pack() {
     bool any_baked = false;
     for (const SceneItem& item : scene_.items) any_baked = any_baked || item.light != nullptr;
+    if (scene_.forest != nullptr)
+      for (const ForestKind& kind : scene_.forest->kinds)
+        any_baked = any_baked || kind.light != nullptr;
     out_.bounds = {glm::vec3(std::numeric_limits<float>::max()),
                    glm::vec3(std::numeric_limits<float>::lowest())};
     for (const SceneItem& item : scene_.items) noteTextureUse(*item.plant);
     for (const SceneItem& item : scene_.items) packItem(item, any_baked);
-    if (out_.draws.empty()) out_.bounds = {glm::vec3(-1.0f), glm::vec3(1.0f)};
+    const bool any_items = !out_.draws.empty();
+    if (scene_.forest != nullptr && !scene_.forest->places.empty()) packTrees(any_baked);
+    if (!any_items) out_.bounds = {glm::vec3(-1.0f), glm::vec3(1.0f)};
     if (leaf_tint_.w > 0.0) out_.leaf_tint = glm::dvec3(leaf_tint_) / leaf_tint_.w;
     std::stable_partition(out_.draws.begin(), out_.draws.end(),
                           [](const Draw& draw) { return !draw.foliage; });
+    for (Draw& draw : out_.draws) {
+      if (!draw.forest) continue;
+      out_.forest->draw_classes.push_back(*draw.forest);
+      draw.forest = static_cast<std::uint32_t>(out_.forest->draw_classes.size() - 1);
+    }
     out_.motions.finish();
     out_.ground = scene_.ground;
     out_.ground_height = scene_.ground_height;
@@ -81,12 +93,10 @@ class Packer {
     const auto first_instance = static_cast<std::uint32_t>(out_.instances.size());
     for (const glm::mat4& instance : item.world_from_plant) {
       const glm::mat4 rows = glm::transpose(worldFromPlant(scene_, item, instance));
-      out_.instances.push_back({{rows[0], rows[1], rows[2]}});
+      out_.instances.push_back({.rows = {rows[0], rows[1], rows[2]}});
     }
     if (item.motion != nullptr) packMotion(item, first_instance);
     const std::size_t first_draw = out_.draws.size();
-    glm::dvec4 leaves(0.0);
-    double leaf_indices = 0.0;
     for (std::size_t m = 0; m < plant.meshes.size(); ++m) {
       const MeshLight* light = item.light != nullptr ? &item.light->meshes[m] : nullptr;
       Draw draw = packMesh(plant, plant.meshes[m], light, any_baked);
@@ -106,37 +116,115 @@ class Packer {
       draw.first_instance = first_instance;
       draw.instance_count = static_cast<std::uint32_t>(item.world_from_plant.size());
       if (draw.index_count == 0 || draw.instance_count == 0) continue;
-      if (draw.foliage) {
-        leaves += double(draw.index_count) * glm::dvec4(draw.uniforms.leaf);
-        leaf_indices += double(draw.index_count);
-      }
       out_.draws.push_back(draw);
     }
-    // Wood stands in the shade of its own plant's leaves.
-    for (std::size_t d = first_draw; d < out_.draws.size(); ++d)
-      if (!out_.draws[d].foliage)
-        out_.draws[d].uniforms.leaf =
-            leaf_indices > 0.0 ? glm::vec4(leaves / leaf_indices) : glm::vec4(1.0f);
-    leaf_tint_ += glm::dvec4(glm::dvec3(leaves), leaf_indices);
+    shadeWood(first_draw);
     const Bounds box = bounds(plant);
     for (std::size_t i = first_instance; i < out_.instances.size(); ++i)
       growBounds(box, out_.instances[i], out_.bounds);
   }
 
-  void packMotion(const SceneItem& item, std::uint32_t first_instance) {
-    const auto& hangs = item.motion->tables->hangs;
-    bool fits = hangs.size() == item.plant->meshes.size();
+  /// Wood stands in the shade of its own plant's leaves: those of the draws from there on, of which
+  /// it returns the mean.
+  glm::vec4 shadeWood(std::size_t first_draw) {
+    glm::dvec4 leaves(0.0);
+    double leaf_indices = 0.0;
+    for (std::size_t d = first_draw; d < out_.draws.size(); ++d) {
+      const Draw& draw = out_.draws[d];
+      if (!draw.foliage) continue;
+      leaves += double(draw.index_count) * glm::dvec4(draw.uniforms.leaf);
+      leaf_indices += double(draw.index_count);
+    }
+    for (std::size_t d = first_draw; d < out_.draws.size(); ++d)
+      if (!out_.draws[d].foliage)
+        out_.draws[d].uniforms.leaf =
+            leaf_indices > 0.0 ? glm::vec4(leaves / leaf_indices) : glm::vec4(1.0f);
+    leaf_tint_ += glm::dvec4(glm::dvec3(leaves), leaf_indices);
+    return leaf_indices > 0.0 ? glm::vec4(leaves / leaf_indices) : glm::vec4(1.0f);
+  }
+
+  void packTrees(bool any_baked) {
+    const Forest& forest = *scene_.forest;
+    PackedForest& packed = out_.forest.emplace(packForest(forest));
+    std::size_t moving = 0;
+    for (const ForestKind& kind : forest.kinds) moving += kind.motion != nullptr ? 1 : 0;
+    std::size_t seats = kMostForestMeshes;
+    for (const ForestKind& kind : forest.kinds) {
+      noteTextureUse(*kind.plant);
+      if (kind.motion == nullptr) continue;
+      checkMotion(*kind.plant, *kind.motion);
+      seats =
+          std::min(seats, kForestMotionWords / moving / PackedMotions::motionWords(*kind.motion));
+    }
+    packed.motion_seats =
+        moving > 0 ? static_cast<std::uint32_t>(std::max<std::size_t>(seats, 1)) : 0;
+    if (moving > 0) packed.most_meshes = packed.motion_seats;
+    for (std::size_t k = 0; k < forest.kinds.size(); ++k) {
+      const ForestKind& kind = forest.kinds[k];
+      PackedForestKind& to = packed.kinds[k];
+      if (kind.motion != nullptr) {
+        to.motion_item = static_cast<int>(out_.motions.items.size());
+        to.tables = kind.motion->tables;
+        out_.motions.addForest(*kind.motion, static_cast<std::uint32_t>(k),
+                               static_cast<std::uint32_t>(k) * packed.motion_seats,
+                               packed.motion_seats);
+      }
+      to.leaf = packTree(kind, kind.plant->meshes, nullptr, to.first_class, any_baked);
+      if (kind.levels == nullptr) continue;
+      for (std::size_t l = 0; l < kind.levels->meshes.size(); ++l)
+        packTree(kind, kind.levels->meshes[l].meshes, &kind.levels->meshes[l],
+                 to.first_class + static_cast<std::uint32_t>(l) + 1, any_baked);
+    }
+  }
+
+  /// A level of a forest's kind; the plant itself without `level`.
+  glm::vec4 packTree(const ForestKind& kind, const std::vector<Mesh>& meshes,
+                     const PlantLevel* level, std::uint32_t forest_class, bool any_baked) {
+    const Plant& plant = *kind.plant;
+    if (kind.light != nullptr && kind.light->meshes.size() != plant.meshes.size())
+      throw Error(plant.name, "its baked light belongs to another plant", "bake this plant");
+    std::optional<CrownLight> gathered;
+    if (level != nullptr && kind.light != nullptr) gathered = lightOf(*level, *kind.light);
+    const CrownLight* const light = gathered ? &*gathered : kind.light;
+    const std::size_t first_draw = out_.draws.size();
+    for (std::size_t m = 0; m < meshes.size(); ++m) {
+      Draw draw =
+          packMesh(plant, meshes[m], light != nullptr ? &light->meshes[m] : nullptr, any_baked);
+      draw.forest = forest_class;
+      draw.moving = kind.motion != nullptr;
+      if (!draw.moving) {
+        out_.motions.addStill(meshes[m].positions.size());
+      } else {
+        const std::vector<glm::uvec2>& hangs = kind.motion->tables->hangs[m];
+        std::vector<glm::uvec2> own;
+        if (level != nullptr)
+          for (const std::uint32_t v : level->sources[m]) own.push_back(hangs[v]);
+        out_.motions.addVertices(level != nullptr ? own : hangs);
+      }
+      if (draw.index_count > 0) out_.draws.push_back(draw);
+    }
+    return shadeWood(first_draw);
+  }
+
+  static void checkMotion(const Plant& plant, const PlantMotion& motion) {
+    const auto& hangs = motion.tables->hangs;
+    bool fits = hangs.size() == plant.meshes.size();
     for (std::size_t m = 0; fits && m < hangs.size(); ++m)
-      fits = hangs[m].size() == item.plant->meshes[m].positions.size();
+      fits = hangs[m].size() == plant.meshes[m].positions.size();
     if (!fits)
-      throw Error(item.plant->name, "its motion belongs to another plant",
-                  "make one with plantMotion()");
+      throw Error(plant.name, "its motion belongs to another plant", "make one with plantMotion()");
+  }
+
+  void packMotion(const SceneItem& item, std::uint32_t first_instance) {
+    checkMotion(*item.plant, *item.motion);
     std::vector<PackedMotions::Rows> rows;
     for (std::size_t i = first_instance; i < out_.instances.size(); ++i)
       rows.push_back(out_.instances[i].rows);
     const auto seats = out_.motions.add(*item.motion, first_instance, rows, kMotionWords);
-    for (std::size_t k = 0; k < seats.size(); ++k)
+    for (std::size_t k = 0; k < seats.size(); ++k) {
       out_.instances[first_instance + k].motion = seats[k];
+      out_.instances[first_instance + k].motion.w = PackedInstance::kPlain;
+    }
   }
 
   /// Transfer vectors know the directions of the world: a plant that was turned has others.

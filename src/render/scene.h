@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "gpu/resources.h"
+#include "render/gpu_forest.h"
 #include "render/grass_pass.h"
 #include "render/mipmaps.h"
 #include "render/motion_pass.h"
+#include "render/packed_forest.h"
 #include "render/packed_motion.h"
 #include "render/packed_transfer.h"
 #include "render/terms.h"
@@ -27,8 +29,9 @@ PackedNormal packNormal(const glm::vec3& unit_normal, float ambient,
 
 /// A place where a plant stands, as shaders read it.
 struct PackedInstance {
-  std::array<glm::vec4, 3> rows;  ///< of world_from_plant
-  glm::uvec4 motion{0};           ///< see instance.glsl
+  std::array<glm::vec4, 3> rows;       ///< of world_from_plant
+  glm::uvec4 motion{0, 0, 0, kPlain};  ///< see instance.glsl
+  static constexpr std::uint32_t kPlain = 0xffffffu | shared::kForestWhole << 24;
 };
 
 /// One mesh at all places of its item.
@@ -44,6 +47,8 @@ struct Draw {
   bool stated_transmission = false;  ///< its material has DiffuseTransmission
   bool moving = false;               ///< in wind
   bool seen = true;                  ///< else it is drawn into the shadow map alone
+  /// Of a forest: which of its draws; its instances are then what the GPU has chosen.
+  std::optional<std::uint32_t> forest;
   std::uint32_t index_count = 0, first_index = 0;
   std::int32_t vertex_offset = 0;
   std::uint32_t instance_count = 0, first_instance = 0;
@@ -110,6 +115,7 @@ struct PackedScene {
   float ground_height = 0.0f;
   glm::vec3 leaf_tint{1.0f};             ///< leafTint() of all foliage, mean over its vertices
   std::optional<PackedTerrain> terrain;  ///< instead of the plane of the ground
+  std::optional<PackedForest> forest;
 };
 
 /// Extends `all` by what is in the box of a plant at this place.
@@ -121,13 +127,20 @@ PackedScene packScene(const Scene& scene);
 
 struct PackedLight;
 
+/// The layouts of all descriptor sets that a scene has: FrameDrawer's.
+struct SceneLayouts {
+  vk::DescriptorSetLayout material;
+  const gpu::SetLayout& transfer;
+  const MotionLayouts& motion;
+  const gpu::SetLayout& grass;
+  const ForestLayouts& forest;
+};
+
 /// A packed scene on the GPU, with a descriptor set for each material (set 1: base colour, normal
 /// map, thickness, colours and vectors of leaves, share and colour of what is transmitted).
 class GpuScene {
  public:
-  GpuScene(const gpu::Device& device, PackedScene packed, vk::DescriptorSetLayout material_layout,
-           const gpu::SetLayout& transfer_layout, const MotionLayouts& motion_layouts,
-           const gpu::SetLayout& grass_layout);
+  GpuScene(const gpu::Device& device, PackedScene packed, const SceneLayouts& layouts);
 
   /// Another bake of the same items, all of which had light; false, and nothing changes, where it
   /// has not as many vertices.
@@ -135,13 +148,16 @@ class GpuScene {
   /// Binds all vertex streams and the index buffer; the normals are those asked for.
   void bindVertices(const vk::raii::CommandBuffer& commands, NormalSource normals) const;
   const std::vector<Draw>& draws() const { return draws_; }
-  /// Draws one of them with the bound pipeline, of `layout`.
+  /// Draws one of them with the bound pipeline, of `layout`. `view`: whose trees of a forest.
   void record(const vk::raii::CommandBuffer& commands, vk::PipelineLayout layout,
-              vk::DescriptorSet frame_set, const Draw& draw) const;
+              vk::DescriptorSet frame_set, const Draw& draw,
+              std::uint32_t view = GpuForest::kPicture) const;
   /// From now on; without wind, plants that could move are drawn as those that cannot.
   void setWind(const Wind& wind, const std::optional<Wind>& last);
-  /// Of all that may move in the wind that was set.
+  /// Of all that may move in the wind that was set, but for the forest.
   const Bounds& bounds() const { return bounds_; }
+  /// And of what casts shadows of the forest, seen from `eye`.
+  Bounds casterBounds(const glm::vec3& eye) const;
   const GpuMotion& motion() const { return *motion_; }
   /// Whether anything does in the wind that was set.
   bool moves() const { return bounds_wind_.has_value(); }
@@ -150,6 +166,9 @@ class GpuScene {
   const glm::vec3& leafTint() const { return leaf_tint_; }
   const std::vector<PackedGround>& grounds() const { return grounds_; }
   GpuTransfer& transfer() { return *transfer_; }
+  /// The forest, or null.
+  GpuForest* forest() { return forest_ ? &*forest_ : nullptr; }
+  const GpuForest* forest() const { return forest_ ? &*forest_ : nullptr; }
   /// What is drawn instead of the plane of the ground, or null.
   GpuTerrain* terrain() { return terrain_ ? &*terrain_ : nullptr; }
   const GpuTerrain* terrain() const { return terrain_ ? &*terrain_ : nullptr; }
@@ -179,6 +198,8 @@ class GpuScene {
   Bounds rest_bounds_, bounds_;
   std::optional<Wind> bounds_wind_;  ///< that bounds_ are for; unset: at rest
   std::optional<GpuTerrain> terrain_;
+  std::optional<GpuForest> forest_;
+  bool any_items_ = false;
   bool ground_ = false;
   float ground_height_ = 0.0f;
   glm::vec3 leaf_tint_{1.0f};

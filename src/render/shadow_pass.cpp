@@ -36,7 +36,8 @@ void ShadowPass::prepare(const gpu::Device& device, const FrameLayout& layout,
 
 void ShadowPass::record(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,
                         vk::DescriptorSet frame_set, const GpuScene& scene,
-                        const gpu::Texture& maps, std::uint32_t count, bool casters) const {
+                        const gpu::Texture& maps, const ImpostorPass& impostors,
+                        std::uint32_t count, bool casters) const {
   const vk::ImageAspectFlags aspect = vk::ImageAspectFlagBits::eDepth;
   gpu::imageBarrier(commands, *maps.image, aspect, gpu::Use::kUndefined,
                     gpu::Use::kDepthAttachment);
@@ -54,6 +55,8 @@ void ShadowPass::record(const vk::raii::CommandBuffer& commands, const FrameLayo
                                          .maxDepth = 1.0f});
     commands.setScissor(0, area);
     if (casters) drawCasters(commands, layout, frame_set, scene, cascade);
+    if (casters && scene.forest() != nullptr)
+      impostors.recordShadows(commands, frame_set, *scene.forest(), cascade, false);
     commands.endRendering();
   }
   gpu::imageBarrier(commands, *maps.image, aspect, gpu::Use::kDepthAttachment,
@@ -69,7 +72,7 @@ void ShadowPass::drawCasters(const vk::raii::CommandBuffer& commands, const Fram
                                         sizeof(shared::DrawUniforms), cascade);
   for (const Draw& draw : scene.draws()) {
     commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipelines_.at(constantsOf(draw)));
-    scene.record(commands, *layout.pipeline, frame_set, draw);
+    scene.record(commands, *layout.pipeline, frame_set, draw, cascade + 1);
   }
 }
 

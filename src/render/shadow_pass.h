@@ -4,6 +4,7 @@
 #include <map>
 
 #include "render/frame_layout.h"
+#include "render/impostor_pass.h"
 #include "render/scene.h"
 
 namespace verdure {
@@ -16,7 +17,7 @@ class ShadowPass {
   /// image used as kFragmentSampled afterwards. Without `casters` they stay empty.
   void record(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,
               vk::DescriptorSet frame_set, const GpuScene& scene, const gpu::Texture& maps,
-              std::uint32_t count, bool casters) const;
+              const ImpostorPass& impostors, std::uint32_t count, bool casters) const;
 
  private:
   void drawCasters(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,

@@ -21,6 +21,7 @@ struct DrawKind {
   LeafModel leaf = LeafModel::kColor;
   bool stated_transmission = false;
   bool moving = false;  ///< in wind
+  bool forest = false;  ///< of a forest: fades, has a tint and haze
   auto operator<=>(const DrawKind&) const = default;
 };
 
@@ -45,7 +46,8 @@ inline gpu::Constants termConstants(const Terms& terms, const DrawKind& kind) {
           kind.thickness_map,
           static_cast<std::uint32_t>(kind.leaf),
           kind.stated_transmission,
-          kind.moving};
+          kind.moving,
+          kind.forest};
 }
 
 }  // namespace verdure

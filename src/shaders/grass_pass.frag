@@ -15,10 +15,10 @@
 // slices across u and across v from front to back, and composites them until nothing is seen through
 // them, until it comes to the ground, out of the shell, to what stands in the grass, or to the most
 // slices that it may; what is still open then is filled by the opaque slice.
-layout(constant_id = 20) const bool kGrass = true;
-layout(constant_id = 21) const bool kBase = true;  // the layer that covers the ground
-layout(constant_id = 24) const bool kFromEye = false;  // rays that never leave the shell they begin in
-layout(constant_id = 23) const bool kMedium = true;  // slices finer than pixels are a medium
+layout(constant_id = 21) const bool kGrass = true;
+layout(constant_id = 22) const bool kBase = true;  // the layer that covers the ground
+layout(constant_id = 25) const bool kFromEye = false;  // rays that never leave the shell they begin in
+layout(constant_id = 24) const bool kMedium = true;  // slices finer than pixels are a medium
 
 layout(location = 0) centroid in vec3 from_eye;
 layout(location = 0) out vec4 out_color;

@@ -2,7 +2,8 @@
 layout(location = 3) in vec4 row0;
 layout(location = 4) in vec4 row1;
 layout(location = 5) in vec4 row2;
-// Added to the index of a beam and of a leaf: where its motion is; phase of its trajectories.
+// Added to the index of a beam and of a leaf: where its motion is; its number among plants; tint
+// of its leaves, 0xRRGGBB, below how it fades (shared/forest.h).
 layout(location = 8) in uvec4 seat_motion;
 
 vec3 worldFromPlant(vec3 p) {

@@ -14,6 +14,7 @@
 #include "coverage.glsl"
 #include "leaf_maps.glsl"
 #include "sun_visibility.glsl"
+#include "haze.glsl"
 
 layout(set = 1, binding = 0) uniform sampler2D base_color;
 layout(set = 1, binding = 1) uniform sampler2D normal_map;
@@ -33,6 +34,7 @@ layout(location = 5) centroid in vec3 back_light;
 layout(location = 6) flat in uint seed;
 layout(location = 7) centroid in vec2 visibility_of_sides;
 layout(location = 8) flat in uint mirrored;
+layout(location = 9) flat in uvec2 seat;  // instance.glsl
 layout(location = 0) out vec4 out_color;
 
 const bool kLeafHasMaps = kLeafModel != kLeafColor;
@@ -70,17 +72,16 @@ void main() {
   // Derivatives from the centres, which lie in one plane.
   if (kTextures || kAlphaTest)
     texel = textureGrad(base_color, covered_uv, uv_x, uv_y);
-  if (kAlphaTest) {
-    int mask = coverageMask(texel.a, draw.surface.x, seed);
-    gl_SampleMask[0] = mask;
-    if (mask == 0) discard;
-  } else {
-    gl_SampleMask[0] = 15;
-  }
+  int mask = kAlphaTest ? coverageMask(texel.a, draw.surface.x, seed) : 15;
+  if (kForest) mask &= fadeMask(seat);
+  gl_SampleMask[0] = mask;
+  if ((kAlphaTest || kForest) && mask == 0) discard;
   bool front = gl_FrontFacing == (mirrored == 0u);  // of the leaf
   if (kLeafHasMaps && !front)
     texel.rgb = textureGrad(leaf_colors, vec3(covered_uv, 0.0), uv_x, uv_y).rgb;
   vec3 color = kTextures ? texel.rgb * draw.color.rgb : draw.matt.rgb;
+  vec3 tint = kForest && kFoliage ? tintOf(seat) : vec3(1.0);
+  color *= tint;
 
   // Opposite normals of neighbouring vertices cancel somewhere between them.
   vec3 n = dot(in_normal.xyz, in_normal.xyz) > 1e-12 ? normalize(in_normal.xyz) : vec3(0, 1, 0);
@@ -98,7 +99,7 @@ void main() {
   vec3 k_t = leafTransmittance(color);
   if (kStatedTransmission) {
     float share = statedShare(draw.transmission.w, covered_uv, uv_x, uv_y);
-    k_t = share * statedColor(draw.transmission.rgb, covered_uv, uv_x, uv_y);
+    k_t = share * statedColor(draw.transmission.rgb, covered_uv, uv_x, uv_y) * tint;
     color *= 1.0 - share;
   }
   vec3 through = vec3(0.0);
@@ -106,7 +107,7 @@ void main() {
   if (kLeafHasMaps && kTransmission) {
     float layer = front ? 1.0 : 2.0;
     vec3 h = lightCoefficients(layer, draw.leaf_light, uv, uv_x, uv_y);
-    k_t = lightColor(layer, covered_uv, uv_x, uv_y);
+    k_t = lightColor(layer, covered_uv, uv_x, uv_y) * tint;
     even = leafEvenDirection(h).z;
     vec3 q = kLeafModel == kLeafMaps ? leafDirection(h) : vec3(0.0, 0.0, even);
     through = leafThrough(side, q);
@@ -167,5 +168,5 @@ void main() {
   }
   vec3 lit = illumination(ambient, frame.sun_light.rgb, visibility, diffuse,
                           k_s, specular);
-  out_color = vec4(clamp(lit, vec3(0.0), vec3(65000.0)), 1.0);
+  out_color = vec4(clamp(kForest ? hazed(lit, position) : lit, vec3(0.0), vec3(65000.0)), 1.0);
 }

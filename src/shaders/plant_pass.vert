@@ -21,6 +21,7 @@ layout(location = 5) centroid out vec3 out_back_light;
 layout(location = 6) flat out uint out_seed;
 layout(location = 7) centroid out vec2 out_visibility;  // by gl_FrontFacing: of true, of false
 layout(location = 8) flat out uint out_mirrored;
+layout(location = 9) flat out uvec2 out_seat;
 
 void main() {
   vec4 decoded = decodeNormal(encoded_normal.xyz);
@@ -32,7 +33,8 @@ void main() {
   vec2 visibility = unpackVisibility(encoded_normal.w * 32767.0);
   out_visibility = mirrored ? visibility.yx : visibility;
   out_mirrored = mirrored ? 1u : 0u;
-  out_seed = uint(gl_VertexIndex) + uint(gl_InstanceIndex) * 0x9e3779b9u;
+  out_seat = seat_motion.zw;
+  out_seed = uint(gl_VertexIndex) + seat_motion.z * 0x9e3779b9u;
   out_uv = uv;
   out_covered_uv = uv;
   out_front_light = front_light;

@@ -20,6 +20,7 @@ layout(constant_id = 16) const bool kThicknessMap = false;
 layout(constant_id = 17) const int kLeafModel = 0;
 layout(constant_id = 18) const bool kStatedTransmission = false;  // DiffuseTransmission
 layout(constant_id = 19) const bool kMoving = false;  // in wind
+layout(constant_id = 20) const bool kForest = false;  // of a forest: fades, has a tint and haze
 // AmbientSource of verdure/render.h.
 const int kConstant = 0, kSky = 1, kBaked = 2, kTransfer = 3, kLeafVisibility = 4;
 // ShadowSource.

@@ -4,9 +4,9 @@
 #include "grass_set.glsl"
 
 // A node of the terrain, or of the shell of grass over it.
-layout(constant_id = 20) const bool kGrass = true;
-layout(constant_id = 24) const bool kFromEye = false;  // the ground under an eye that is in the shell
-layout(constant_id = 22) const uint kCells = 16u;  // along a node
+layout(constant_id = 21) const bool kGrass = true;
+layout(constant_id = 25) const bool kFromEye = false;  // the ground under an eye that is in the shell
+layout(constant_id = 23) const uint kCells = 16u;  // along a node
 layout(location = 0) in vec4 corner_cell_begin;    // of TerrainNode
 layout(location = 1) in float end;
 

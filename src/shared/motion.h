@@ -2,6 +2,7 @@
 #define VERDURE_SHARED_MOTION_H_
 
 #include "portable.h"
+#include "random.h"
 
 // Where a branch reads its motion texture: Habel, "Real-time Rendering and Animation of
 // Vegetation", dissertation, TU Wien 2009, 4.5.3. A function of time alone: no state is kept, and
@@ -16,6 +17,13 @@ struct MotionTrajectory {
   uvec2 velocity;  ///< a second
 };
 SHARED_SIZE(MotionTrajectory, 16);
+
+/// What keeps a plant out of unison with others: 0 for the first.
+SHARED_FUNCTION uvec2 motionPhase(uint plant) {
+  if (plant == 0u) return uvec2(0u, 0u);
+  uint first = scrambled(plant);
+  return uvec2(first, scrambled(first));
+}
 
 /// Where the trajectory is after whole + fraction seconds, fraction in [0, 1]: in [0, 2), to be
 /// read with repetition, exact within 2^-22 of the texture.

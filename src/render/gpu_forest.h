@@ -1,0 +1,103 @@
+#ifndef VERDURE_RENDER_GPU_FOREST_H_
+#define VERDURE_RENDER_GPU_FOREST_H_
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "gpu/descriptors.h"
+#include "gpu/pipeline.h"
+#include "render/cascades.h"
+#include "render/packed_forest.h"
+#include "render/packed_motion.h"
+#include "verdure/render.h"
+
+namespace verdure {
+
+/// Descriptor sets of the passes that choose a forest's trees, and that draw impostors.
+struct ForestLayouts {
+  explicit ForestLayouts(const gpu::Device& device);
+  gpu::SetLayout choice;    ///< as in src/shaders/forest_set.glsl
+  gpu::SetLayout impostor;  ///< as in src/shaders/impostor.glsl
+};
+
+/// A forest on the GPU, and the trees that were chosen for each view of a frame: the picture's, the
+/// sun's maps' and the one around the eye whose trees move.
+class GpuForest {
+ public:
+  static constexpr std::uint32_t kPicture = 0, kMotionView = 1 + shared::kMostCascades,
+                                 kViews = kMotionView + 1;
+
+  /// `draws`: of the forest, in their order, without numbers of instances. Throws Error where the
+  /// device's storage buffers are too small.
+  GpuForest(const gpu::Device& device, gpu::Upload& upload, PackedForest packed,
+            std::span<const vk::DrawIndexedIndirectCommand> draws, const ForestLayouts& layouts);
+  /// Behind the constructor: what moves its trees, by whose trunks impostors bend.
+  void setMotion(const PackedMotions& packed, const gpu::Buffer& beams, const gpu::Buffer& drives,
+                 std::span<const gpu::Buffer> texels);
+
+  /// Of the frame that comes: levels by the camera and the picture's size, places by the views.
+  void look(const View& view, std::span<const Cascade> cascades);
+  /// In this wind or weaker ones; none: at rest.
+  void setWind(const std::optional<Wind>& wind);
+  /// What casts shadows around `eye`, at rest or in the wind that was set.
+  Bounds casterBounds(const glm::vec3& eye) const;
+
+  /// The chosen trees as the instances of a draw, 64 bytes each.
+  vk::Buffer seats() const { return *seats_.buffer; }
+  vk::DeviceSize seatOffset(std::uint32_t view) const;
+  void draw(const vk::raii::CommandBuffer& commands, std::uint32_t number,
+            std::uint32_t view) const;
+  /// The impostors of a kind, with the bound pipeline.
+  void drawFar(const vk::raii::CommandBuffer& commands, std::uint32_t kind,
+               std::uint32_t view) const;
+  const gpu::Buffer& seatBuffer() const { return seats_; }
+  const gpu::Buffer& commandBuffer() const { return commands_; }
+  /// Where its two dispatches are: branches, then leaves.
+  vk::DeviceSize motionCommand(std::uint32_t kind) const;
+  bool moves() const { return moves_; }
+  /// Trees that the picture shows as meshes and as impostors; after the fence.
+  std::pair<std::uint32_t, std::uint32_t> counts() const;
+  std::size_t bytes() const;  ///< of what grows with the number of trees
+
+ private:
+  friend class ForestPass;
+  friend class ImpostorPass;
+  struct Kind {
+    std::optional<gpu::Texture> color, normal, light;
+    std::optional<gpu::DescriptorSet> set;
+  };
+
+  PackedForest packed_;
+  std::uint32_t draw_count_ = 0;
+  std::vector<shared::ForestKindData> kind_data_;
+  std::vector<shared::ImpostorKind> impostor_data_;
+  std::vector<Kind> kinds_;
+  gpu::Buffer places_, clusters_, kind_buffer_, views_, counts_, ranges_, commands_, draw_classes_,
+      seats_, fars_, slots_, impostors_;
+  std::optional<gpu::DescriptorSet> set_;
+  vk::raii::Sampler sampler_ = nullptr;
+  std::array<shared::ForestView, kViews> view_data_{};
+  std::uint32_t view_count_ = 1;  ///< picture and cascades of this frame
+  std::optional<Wind> wind_;
+  bool moves_ = false;
+  glm::vec3 low_{0.0f}, high_{0.0f};  ///< of all places
+  float tallest_m_ = 0.0f;            ///< of any tree, its farthest point from its place
+};
+
+/// Chooses: before anything that draws or moves trees.
+class ForestPass {
+ public:
+  explicit ForestPass(const gpu::Device& device);
+  const ForestLayouts& layouts() const { return layouts_; }
+  void record(const vk::raii::CommandBuffer& commands, const GpuForest& forest) const;
+
+ private:
+  ForestLayouts layouts_;
+  vk::raii::PipelineLayout layout_;
+  vk::raii::Pipeline count_, scan_, list_;
+};
+
+}  // namespace verdure
+
+#endif  // VERDURE_RENDER_GPU_FOREST_H_

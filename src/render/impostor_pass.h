@@ -1,0 +1,39 @@
+#ifndef VERDURE_RENDER_IMPOSTOR_PASS_H_
+#define VERDURE_RENDER_IMPOSTOR_PASS_H_
+
+#include <map>
+
+#include "render/frame_layout.h"
+#include "render/scene.h"
+
+namespace verdure {
+
+/// Draws a forest's far trees, each as a card of what it looks like from there. Inside of
+/// rendering.
+class ImpostorPass {
+ public:
+  enum class Target { kPicture, kShadowMap, kLightDepthMap };
+
+  ImpostorPass(const gpu::Device& device, vk::DescriptorSetLayout frame_set,
+               const ForestLayouts& layouts);
+  /// Makes pipelines, once each; before recording.
+  void prepare(const Terms& terms, const DrawKind& kind, bool light_depth);
+  void record(const vk::raii::CommandBuffer& commands, vk::DescriptorSet frame_set,
+              const GpuForest& forest, const Terms& terms, const DrawKind& kind) const;
+  /// One of the sun's maps.
+  void recordShadows(const vk::raii::CommandBuffer& commands, vk::DescriptorSet frame_set,
+                     const GpuForest& forest, std::uint32_t cascade, bool light_depth) const;
+
+ private:
+  void draw(const vk::raii::CommandBuffer& commands, vk::DescriptorSet frame_set,
+            const GpuForest& forest, std::uint32_t view) const;
+
+  const gpu::Device* device_;
+  vk::raii::PipelineLayout layout_;
+  std::map<gpu::Constants, vk::raii::Pipeline> pictures_;
+  std::map<bool, vk::raii::Pipeline> shadows_;  ///< by whether it is a light depth map
+};
+
+}  // namespace verdure
+
+#endif  // VERDURE_RENDER_IMPOSTOR_PASS_H_

@@ -1,0 +1,167 @@
+#ifndef VERDURE_SHARED_FOREST_H_
+#define VERDURE_SHARED_FOREST_H_
+
+#include "portable.h"
+#include "sway.h"
+
+// A forest's trees as the GPU chooses them: which are seen, and how fine each is drawn.
+
+SHARED_BEGIN
+
+const uint kForestGroup = 128u;       ///< trees that are kept together: a cluster, a work group
+const uint kMostForestClasses = 96u;  ///< kinds times their levels and impostor
+const uint kMostForestLevels = 4u;    ///< meshes of a kind, the plant itself among them
+/// Share of a level's reach over which it gives way to the next.
+const float kForestFade = 0.12f;
+const uint kForestNone = 0xffffffffu;
+/// In the fade of a drawn tree: what the finer level leaves, see keptSamples().
+const uint kForestRest = 128u;
+const uint kForestWhole = 127u;
+
+/// verdure::Placement, by its words.
+struct ForestPlace {
+  uint kind;
+  float x, y, z;
+  float angle;
+  float scale;
+  uint tint;
+  uint phase;
+};
+SHARED_SIZE(ForestPlace, 32);
+
+/// Of one kind of plant.
+struct ForestKindData {
+  vec4 sphere;        ///< around it in any wind that blows: middle and radius, plant's coordinates
+  vec4 reach;         ///< how far each mesh is drawn at scale 1, m, rising; the last levels repeat
+  uint first_class;   ///< of its meshes, finest first, then of its impostor
+  uint meshes;        ///< [1, kMostForestLevels]
+  uint has_impostor;  ///< else the last mesh is drawn at any distance
+  uint moves;         ///< has motion
+  uint beam_base;     ///< where the amplitudes of its first tree's beams are, less its first beam
+  uint beams;
+  uint leaf_base;
+  uint leaves;
+};
+SHARED_SIZE(ForestKindData, 64);
+
+/// From where the forest is looked at.
+struct ForestView {
+  vec4 planes[6];   ///< dot(xyz, p) + w is negative outside, m
+  vec4 eye;         ///< of the picture, from which levels are chosen; w: most reach of meshes, m
+  float farthest;   ///< from the eye, m
+  uint fades;       ///< levels give way to each other step by step, not at once
+  uint first_seat;  ///< where its drawn trees lie
+  uint seats;       ///< and how many have room
+  uint first_far;   ///< of its impostors
+  uint fars;
+  uint motion;  ///< 1: all trees around that may be drawn as meshes, for their motion
+  uint padding;
+};
+SHARED_SIZE(ForestView, 144);
+
+/// An impostor is a strip of so many quads, so that it can bend.
+const uint kImpostorRows = 4u;
+const uint kImpostorVertices = 24u;
+
+/// What draws the impostors of a kind.
+struct ImpostorKind {
+  vec4 sphere;  ///< of its pictures: middle and radius, plant's coordinates
+  vec4 leaf;    ///< of its leaves, as DrawUniforms
+  vec4 reach;   ///< as ForestKindData
+  uint meshes;
+  uint views;  ///< a side
+  uint moves;
+  uint whole;  ///< seconds
+  MotionMoment moment;
+  uint beam;  ///< its trunk
+  uint padding0;
+  uint padding1;
+  uint padding2;
+};
+SHARED_SIZE(ImpostorKind, 176);
+
+/// Push constants of its draws.
+struct ImpostorJob {
+  uint kind;
+  uint range;      ///< of its trees
+  uint first_far;  ///< of the view's
+  uint cascade;    ///< kForestNone: the picture
+  float most;      ///< reach of meshes, m
+};
+SHARED_SIZE(ImpostorJob, 20);
+
+/// The level at which a tree is drawn, and the one that it gives way to.
+struct ForestLevel {
+  uint level;
+  uint next;    ///< the same where it does not
+  float share;  ///< of `level`, (0, 1]
+};
+
+/// `reach`, `meshes`, `has_impostor` of the kind; `distance` and `most`, the farthest that meshes
+/// are drawn at all, m, both divided by the tree's scale. The impostor is level `meshes`.
+SHARED_FUNCTION ForestLevel forestLevel(vec4 reach, uint meshes, uint has_impostor, float distance,
+                                        float most) {
+  ForestLevel choice;
+  uint last = has_impostor != 0u ? meshes : meshes - 1u;
+  choice.level = last;
+  choice.next = last;
+  choice.share = 1.0f;
+  for (uint i = 0u; i < last; ++i) {
+    float end = min(reach[int(i)], most);
+    if (distance >= end) continue;
+    choice.level = i;
+    choice.next = i;
+    float start = end * (1.0f - kForestFade);
+    if (distance > start) {
+      // Levels that end at the same distance are left out.
+      choice.next = i + 1u;
+      while (choice.next < last && min(reach[int(choice.next)], most) <= end) ++choice.next;
+      choice.share = 1.0f - (distance - start) / (end - start);
+    }
+    return choice;
+  }
+  return choice;
+}
+
+/// Whether a sphere reaches into a view.
+SHARED_FUNCTION bool seesSphere(ForestView view, vec3 middle, float radius) {
+  for (int i = 0; i < 6; ++i)
+    if (dot(vec3(view.planes[i]), middle) + view.planes[i].w < -radius) return false;
+  return length(middle - vec3(view.eye)) - radius < view.farthest;
+}
+
+/// A direction from the plant's coordinates to the world's, by its turn about +Y.
+SHARED_FUNCTION vec3 turnedBy(float angle, vec3 v) {
+  float c = cos(angle), s = sin(angle);
+  return vec3(c * v.x + s * v.z, v.y, c * v.z - s * v.x);
+}
+
+/// The middle of a tree's sphere in the world.
+SHARED_FUNCTION vec3 forestMiddle(ForestPlace place, vec4 sphere) {
+  return vec3(place.x, place.y, place.z) + place.scale * turnedBy(place.angle, vec3(sphere));
+}
+
+/// Which of a pixel's four samples a tree may cover that fades in or out: a level and the one that
+/// takes its place have none in common, and all together. `noise` in [0, 1) is the pixel's and the
+/// tree's.
+SHARED_FUNCTION uint keptSamples(uint fade, float noise) {
+  if (fade == kForestWhole) return 15u;
+  uint share = fade & kForestWhole;
+  uint count = min(uint(floor(float(share) * (4.0f / 127.0f) + noise)), 4u);
+  uint turn = uint(floor(noise * 64.0f)) & 3u;
+  uint mask = (1u << count) - 1u;
+  mask = ((mask << turn) | (mask >> (4u - turn))) & 15u;
+  return (fade & kForestRest) != 0u ? 15u - mask : mask;
+}
+
+/// Irradiance by direction on leaves that face all ways, of which `normal` is the mean: the cosine
+/// to light from `l`, clamped, by its harmonics of three bands (Ramamoorthi and Hanrahan 2001),
+/// with the mean's length for what they have in common. [0, 1.07].
+SHARED_FUNCTION float meanCosine(vec3 normal, vec3 l) {
+  float x = dot(normal, l);
+  return max(0.25f + 0.5f * x + 0.15625f * (3.0f * x * x - dot(normal, normal)), 0.0f);
+}
+
+SHARED_END
+
+#endif  // VERDURE_SHARED_FOREST_H_

@@ -1,0 +1,324 @@
+// Forests: chosen by the GPU, drawn at several levels.
+#include "base/random.h"
+#include "rays/ray_scene.h"
+#include "render/frame.h"
+#include "render_fixture.h"
+#include "shared/color.h"
+#include "verdure/grow.h"
+#include "verdure/levels.h"
+#include "verdure/motion.h"
+
+namespace verdure {
+namespace {
+
+using namespace test;
+
+struct Kind {
+  Plant plant;
+  PlantMotion motion;
+  PlantLevels levels;
+};
+
+/// A small tree with all that a forest asks of it, made once.
+const Kind& maple() {
+  static const Kind kind = [] {
+    Kind made;
+    GrowOptions options;
+    options.species = "japanese-maple";
+    options.seed = 2;
+    options.texture_size = 64;
+    options.leaf_form = LeafForm::kCard;
+    made.plant = grow(options);
+    made.motion = plantMotion(made.plant, {.texture_width = 512, .texture_height = 256});
+    made.levels = makeLevels(made.plant, nullptr);
+    return made;
+  }();
+  return kind;
+}
+
+Placement placeAt(const glm::vec3& position, float angle, std::uint32_t phase) {
+  Placement place;
+  place.position = position;
+  place.angle = angle;
+  place.phase = phase;
+  return place;
+}
+
+Forest forestOf(std::vector<Placement> places, bool levels, bool moving) {
+  const Kind& kind = maple();
+  Forest forest;
+  forest.kinds = {
+      {&kind.plant, nullptr, moving ? &kind.motion : nullptr, levels ? &kind.levels : nullptr}};
+  forest.places = std::move(places);
+  return forest;
+}
+
+Scene sceneOf(const Forest& forest) {
+  Scene scene;
+  scene.ground = false;
+  scene.forest = &forest;
+  return scene;
+}
+
+class ForestRender : public testing::Test {
+ protected:
+  ForestRender() : device_("", true), drawer_(device_) {}
+  ~ForestRender() override { EXPECT_EQ(device_.validationMessages(), 0); }
+
+  GpuScene packed(const Scene& scene) {
+    return GpuScene(device_, packScene(scene), drawer_.sceneLayouts());
+  }
+  Frame draw(const Scene& scene, const View& view) {
+    GpuScene on_gpu = packed(scene);
+    drawer_.forgetScene();
+    return drawer_.draw(on_gpu, view);
+  }
+  static View view() {
+    View view = smallView(160, 120);
+    view.hdr = false;
+    view.camera = {{1.2f, 1.4f, 9.0f}, {1.2f, 1.1f, 0.0f}, 0.6f};
+    view.terms = presetTerms("standard");
+    view.exposure.ev = 14.0f;
+    view.exposure.white = 4.0f;
+    view.shadow_cascades = 1;
+    view.background = glm::vec3(0.2f);
+    return view;
+  }
+
+  gpu::Device device_;
+  FrameDrawer drawer_;
+};
+
+int differing(const Image& a, const Image& b, int levels) {
+  int count = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); i += 4) {
+    int most = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+      most = std::max(most, std::abs(int{a.rgba[i + c]} - int{b.rgba[i + c]}));
+    count += most > levels ? 1 : 0;
+  }
+  return count;
+}
+
+TEST_F(ForestRender, WithoutLevelsLooksAsItemsDo) {
+  for (const bool wind : {false, true}) {
+    for (const float angle : {0.0f, 1.3f}) {
+      const std::vector<Placement> places{placeAt({0, 0, 0}, 0.0f, 0),
+                                          placeAt({2.5f, 0, -1.0f}, angle, 1),
+                                          placeAt({-1.5f, 0.2f, -4.0f}, angle, 2)};
+      const Forest forest = forestOf(places, false, true);
+      Scene items = itemScene(maple().plant, nullptr);
+      items.items[0].motion = &maple().motion;
+      items.items[0].world_from_plant.clear();
+      for (const Placement& place : places)
+        items.items[0].world_from_plant.push_back(matrixOf(place));
+      View view = this->view();
+      view.terms.shadow = false;  // a forest's maps lie elsewhere
+      if (wind) view.wind = {.speed = 9.0f, .from = 0.7f, .gusts = 0.5f};
+      view.seconds = 3.5;
+      const Image expected = draw(items, view).image, seen = draw(sceneOf(forest), view).image;
+      // Sines and cosines of a GPU have fewer digits.
+      EXPECT_LE(differing(expected, seen, 1), angle == 0.0f && !wind ? 0 : 20)
+          << wind << " " << angle;
+    }
+  }
+}
+
+TEST_F(ForestRender, ShadowsAreThoseOfItems) {
+  const std::vector<Placement> places{placeAt({0, 0, 0}, 0.0f, 0), placeAt({2.5f, 0, -1}, 0.0f, 1)};
+  for (const ShadowSource source : {ShadowSource::kShadowMap, ShadowSource::kDepthOrdered}) {
+    const Forest forest = forestOf(places, false, false);
+    Scene trees = sceneOf(forest), items = itemScene(maple().plant, nullptr);
+    items.items[0].world_from_plant = {matrixOf(places[0]), matrixOf(places[1])};
+    items.ground = trees.ground = true;
+    View view = this->view();
+    view.shadow_map_size = 1024;
+    view.terms.shadow_source = source;
+    const Image expected = draw(items, view).image, seen = draw(trees, view).image;
+    // Other maps, so other edges of shadows.
+    EXPECT_LT(differing(expected, seen, 24), 160 * 120 / 50);
+  }
+}
+
+/// Trees at random places on a square around the origin.
+std::vector<Placement> scattered(int count, float side, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Placement> places;
+  for (int i = 0; i < count; ++i) {
+    Placement place = placeAt({random.uniform(-0.5f, 0.5f) * side, random.uniform(-1.0f, 1.0f),
+                               random.uniform(-0.5f, 0.5f) * side},
+                              random.uniform(0.0f, 6.28f), static_cast<std::uint32_t>(i));
+    place.scale = random.uniform(0.7f, 1.4f);
+    places.push_back(place);
+  }
+  return places;
+}
+
+TEST_F(ForestRender, ChoosesWhatBruteForceDoes) {
+  const Forest forest = forestOf(scattered(1500, 300.0f, 7), true, false);
+  GpuScene scene = packed(sceneOf(forest));
+  const PackedForest known = packForest(forest);
+  const Bounds box = bounds(maple().plant);
+  const glm::vec4 sphere(box.center(), 0.5f * glm::length(box.size()));
+  Random random(8);
+  for (int i = 0; i < 6; ++i) {
+    View view = this->view();
+    view.width = 96;
+    view.height = 64;
+    view.camera.eye = {random.uniform(-150.0f, 150.0f), 3.0f, random.uniform(-150.0f, 150.0f)};
+    view.camera.target =
+        view.camera.eye + glm::vec3(random.uniform(-1.0f, 1.0f), random.uniform(-0.3f, 0.1f),
+                                    random.uniform(-1.0f, 1.0f));
+    drawer_.draw(scene, view);
+    const auto [meshes, far] = scene.forest()->counts();
+
+    const glm::mat4 clip = clipFromWorld(view.camera, 1.5f);
+    const float pixels_per_m = 32.0f / std::tan(0.5f * view.camera.vertical_fov);
+    const glm::vec4 reach = levelReach(known.kinds[0], pixels_per_m, 1.0f);
+    std::uint32_t near_count = 0, far_count = 0;
+    for (const shared::ForestPlace& place : known.places) {
+      const glm::vec3 middle = shared::forestMiddle(place, sphere);
+      bool seen = true;
+      const auto row = [&clip](int r) {
+        return glm::vec4(clip[0][r], clip[1][r], clip[2][r], clip[3][r]);
+      };
+      for (const glm::vec4& plane :
+           {row(3) + row(0), row(3) - row(0), row(3) + row(1), row(3) - row(1), row(3)})
+        seen = seen && glm::dot(plane, glm::vec4(middle, 1.0f)) / glm::length(glm::vec3(plane)) >=
+                           -sphere.w * place.scale;
+      if (!seen) continue;
+      const shared::ForestLevel level = shared::forestLevel(
+          reach, 3, 1, glm::length(middle - view.camera.eye) / place.scale, 1e30f);
+      near_count += level.level < 3 ? 1 : 0;
+      near_count += level.next != level.level && level.next < 3 ? 1 : 0;
+      far_count += level.level == 3 || level.next == 3 ? 1 : 0;
+    }
+    EXPECT_NEAR(meshes, near_count, 1.0) << i;  // one that lies on a border may go either way
+    EXPECT_NEAR(far, far_count, 1.0) << i;
+    EXPECT_GT(far_count + near_count, 10u);
+  }
+}
+
+TEST(PackedForest, KnowsHowFarItsTreesAreFew) {
+  const Forest forest = forestOf(scattered(5000, 500.0f, 9), true, false);
+  const PackedForest packed = packForest(forest);
+  std::size_t members = 0;
+  for (std::size_t c = 0; c < packed.clusters.size(); ++c)
+    for (std::size_t i = c * shared::kForestGroup;
+         i < std::min<std::size_t>((c + 1) * shared::kForestGroup, packed.places.size()); ++i) {
+      const shared::ForestPlace& p = packed.places[i];
+      EXPECT_LE(glm::length(glm::vec3(p.x, p.y, p.z) - glm::vec3(packed.clusters[c])),
+                packed.clusters[c].w * 1.0001f + 1e-4f);
+      ++members;
+    }
+  EXPECT_EQ(members, 5000u);
+  for (const glm::vec3& eye : {glm::vec3(0.0f), glm::vec3(250.0f, 2.0f, 250.0f)})
+    for (const std::uint32_t most : {300u, 1000u, 4000u}) {
+      const float reach = distanceOfNearest(packed, eye, most);
+      std::uint32_t near = 0;
+      for (const Placement& place : forest.places)
+        near += glm::length(place.position - eye) < reach ? 1 : 0;
+      EXPECT_LE(near, most);
+      EXPECT_GT(near, most / 3);
+    }
+  EXPECT_GT(distanceOfNearest(packed, glm::vec3(0.0f), 5000), 1e30f);
+}
+
+TEST(PackedForest, RefusesWhatIsWrong) {
+  Forest forest = forestOf(scattered(3, 10.0f, 1), true, false);
+  forest.places[1].plant = 4;
+  EXPECT_THROW(packForest(forest), Error);
+  forest = forestOf(scattered(3, 10.0f, 1), true, false);
+  forest.places[0].scale = 0.0f;
+  EXPECT_THROW(packForest(forest), Error);
+  forest = forestOf(scattered(3, 10.0f, 1), true, false);
+  forest.detail = -1.0f;
+  EXPECT_THROW(packForest(forest), Error);
+  forest.detail = 1.0f;
+  forest.kinds[0].plant = nullptr;
+  EXPECT_THROW(packForest(forest), Error);
+}
+
+TEST_F(ForestRender, IsTheSameEachTime) {
+  const Forest forest = forestOf(scattered(600, 120.0f, 3), true, true);
+  View view = this->view();
+  view.wind = {.speed = 6.0f};
+  view.seconds = 2.0;
+  view.background.reset();
+  const Image one = draw(sceneOf(forest), view).image, two = draw(sceneOf(forest), view).image;
+  EXPECT_EQ(one.rgba, two.rgba);
+}
+
+TEST_F(ForestRender, TreesTakeAtMost64BytesEach) {
+  const Plant quad = whiteQuad();
+  PlantLevels levels;
+  levels.impostor = bakeImpostor(quad, nullptr, {.views = 2, .texels = 16, .samples = 1});
+  Forest forest;
+  for (int k = 0; k < 4; ++k) forest.kinds.push_back({&quad, nullptr, nullptr, &levels});
+  forest.places = scattered(100000, 5000.0f, 4);
+  for (std::size_t i = 0; i < forest.places.size(); ++i)
+    forest.places[i].plant = static_cast<std::uint32_t>(i % 4);
+  GpuScene scene = packed(sceneOf(forest));
+  EXPECT_LE(scene.forest()->bytes() / forest.places.size(), 64u);
+}
+
+/// Square metres (seen at the distance of the trees) that a picture's trees cover. They are drawn
+/// black before white.
+double coveredShare(const Image& image) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4)
+    sum += 1.0 - double{shared::linearFromSrgb(static_cast<float>(image.rgba[i]) / 255.0f)};
+  return sum / static_cast<double>(image.rgba.size() / 4);
+}
+
+TEST_F(ForestRender, FarTreesCoverWhatNearOnesDo) {
+  // As in a picture 1080 pixels high with a field of view of 34 degrees.
+  constexpr float kPixelsPerM = 1745.0f;
+  const float height_m = bounds(maple().plant).max.y;
+  for (const float distance : {10.0f, 25.0f, 60.0f, 150.0f, 400.0f, 1000.0f}) {
+    std::vector<Placement> places;
+    const int count = distance < 20.0f ? 1 : distance < 100.0f ? 3 : 24;
+    for (int i = 0; i < count; ++i)
+      places.push_back(
+          placeAt({1.6f * height_m * (static_cast<float>(i) - 0.5f * static_cast<float>(count - 1)),
+                   0.0f, -distance},
+                  0.7f * static_cast<float>(i), static_cast<std::uint32_t>(i)));
+    View view = this->view();
+    const float pixels = kPixelsPerM / distance;
+    view.height = static_cast<int>(1.3f * height_m * pixels) + 2;
+    view.width = static_cast<int>(1.7f * height_m * pixels * static_cast<float>(count)) + 2;
+    view.camera.eye = glm::vec3(0.0f, 0.5f * height_m, 0.0f);
+    view.camera.target = glm::vec3(0.0f, 0.5f * height_m, -distance);
+    view.camera.vertical_fov =
+        2.0f * std::atan(0.5f * static_cast<float>(view.height) / kPixelsPerM);
+    view.background = glm::vec3(1.0f);
+    view.bloom = 0.0f;
+    view.terms.ambient = view.terms.diffuse = view.terms.specular = view.terms.shadow = false;
+    const Forest forest = forestOf(places, true, false);
+    const double seen = coveredShare(draw(sceneOf(forest), view).image);
+
+    Scene truth = itemScene(maple().plant, nullptr);
+    truth.items[0].world_from_plant.clear();
+    for (const Placement& place : places)
+      truth.items[0].world_from_plant.push_back(matrixOf(place));
+    const RayScene rays(truth);
+    const CameraRays camera =
+        cameraRays(view.camera, static_cast<float>(view.width) / static_cast<float>(view.height));
+    Random random(5);
+    constexpr int kRays = 200000;
+    int hits = 0;
+    for (int i = 0; i < kRays; ++i) {
+      const glm::vec2 at(random.uniform(-1.0f, 1.0f), random.uniform(-1.0f, 1.0f));
+      Ray ray;
+      ray.origin = camera.eye;
+      ray.direction = camera.forward + at.x * camera.right + at.y * camera.down;
+      hits += rays.occluded(ray) ? 1 : 0;
+    }
+    const double covered = static_cast<double>(hits) / kRays;
+    EXPECT_NEAR(seen / covered, 1.0, 0.03) << distance << " m, " << view.width << "x" << view.height
+                                           << ": " << seen << " of " << covered;
+  }
+}
+
+}  // namespace
+}  // namespace verdure

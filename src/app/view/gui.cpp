@@ -1,0 +1,425 @@
+#include "app/view/gui.h"
+
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "app/view/fly_camera.h"
+#include "app/view/orbit_camera.h"
+#include "app/view/surface_overlay.h"
+#include "app/view/widgets.h"
+#include "scene/scene.h"
+#include "verdure/error.h"
+
+namespace verdure::app {
+namespace {
+
+constexpr float kPanelWidth = 330.0f;
+constexpr float kTurnPerHeight = 3.0f;  // radians that a drag across the window's height turns
+constexpr float kZoomPerNotch = 0.88f;
+const std::vector<std::string> kOpened{".json", ".glb", ".gltf", ".obj", ".fbx",
+                                       ".dae",  ".ply", ".hdr",  ".exr"};
+
+bool isPanorama(const std::filesystem::path& path) {
+  return path.extension() == ".hdr" || path.extension() == ".exr";
+}
+
+bool held(const Window& window, int key) {
+  return glfwGetKey(window.handle(), key) == GLFW_PRESS;
+}
+
+}  // namespace
+
+GuiContext::GuiContext(const Window& window) {
+  IMGUI_CHECKVERSION();
+  ImGui::CreateContext();
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;  // nothing is left behind in the folder it was started from
+  ImGui::StyleColorsDark();
+  ImGuiStyle& style = ImGui::GetStyle();
+  style.WindowRounding = 0.0f;
+  style.FrameRounding = 2.0f;
+  style.WindowBorderSize = 0.0f;
+  style.Colors[ImGuiCol_WindowBg].w = 1.0f;
+  const float scale = window.scale();
+  style.ScaleAllSizes(scale);
+  ImFontConfig font;
+  font.SizePixels = std::floor(13.0f * scale);
+  io.Fonts->AddFontDefault(&font);
+  ImGui_ImplGlfw_InitForOther(window.handle(), true);
+}
+
+GuiContext::~GuiContext() {
+  ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext();
+}
+
+Gui::Gui(Window& window, Screen& screen, ViewSession& session)
+    : window_(&window), screen_(&screen), session_(&session) {}
+
+void Gui::askToClose() {
+  // Asked twice is answered.
+  if (!session_->modified() || asks_to_close_) closes_ = true;
+  asks_to_close_ = true;
+}
+
+void Gui::openDialog() {
+  files_.open("Open a plant, a scene or a panorama", std::filesystem::current_path(), kOpened,
+              false, [this](const std::filesystem::path& path) {
+                if (isPanorama(path)) {
+                  session_->settings.daylight.sky = path.string();
+                  session_->changed(Change::kPicture);
+                } else {
+                  session_->open(path);
+                }
+              });
+}
+
+void Gui::saveDialog() {
+  const std::filesystem::path known = session_->scenePath();
+  files_.open("Save the scene", known.empty() ? std::filesystem::path("scene.json") : known,
+              {".json"}, true,
+              [this](const std::filesystem::path& path) { session_->saveScene(path); });
+}
+
+void Gui::menu() {
+  if (!ImGui::BeginMainMenuBar()) return;
+  const bool has_plant = session_->shown() != nullptr && !session_->settings.plants.empty();
+  if (ImGui::BeginMenu("File")) {
+    if (ImGui::MenuItem("Open...", "Ctrl+O")) openDialog();
+    if (ImGui::MenuItem("Grow...", "Ctrl+G")) asks_to_grow_ = true;
+    if (ImGui::MenuItem("Save the scene", "Ctrl+S")) {
+      if (session_->scenePath().empty())
+        saveDialog();
+      else
+        session_->saveScene(session_->scenePath());
+    }
+    if (ImGui::MenuItem("Save the scene as...")) saveDialog();
+    if (ImGui::MenuItem("Save the plant with its light...", nullptr, false, has_plant)) {
+      const std::size_t plant = panel_state_.plant;
+      files_.open(
+          "Save the plant with its light", session_->settings.plants[plant].name + "-lit.glb",
+          {".glb", ".gltf"}, true,
+          [this, plant](const std::filesystem::path& path) { session_->savePlant(plant, path); });
+    }
+    ImGui::Separator();
+    if (ImGui::MenuItem("Screenshot", "F12")) session_->saveScreenshot();
+    if (ImGui::MenuItem("Screenshot of the window", "Shift+F12")) capture_ = "verdure-window.png";
+    if (ImGui::MenuItem("Clip...", nullptr, false, has_plant)) asks_for_clip_ = true;
+    ImGui::Separator();
+    if (ImGui::MenuItem("Close", "Ctrl+Q")) askToClose();
+    ImGui::EndMenu();
+  }
+  if (ImGui::BeginMenu("Bake")) {
+    if (ImGui::MenuItem("Bake the light", "B", false, has_plant))
+      session_->changed(Change::kBake, panel_state_.plant);
+    ImGui::MenuItem("Show the field's surface", nullptr, &session_->show_surface);
+    ImGui::EndMenu();
+  }
+  if (ImGui::BeginMenu("View")) {
+    ImGui::MenuItem("Panels", "Tab", &panels_);
+    if (ImGui::MenuItem("Show all", "Home")) session_->showAll();
+    if (ImGui::MenuItem(session_->playing ? "Pause the wind" : "Let the wind blow", "Space")) {
+      session_->playing = !session_->playing;
+      if (session_->playing && !(session_->view().wind.speed > 0.0f))
+        session_->settings.wind.speed = 5.0f;
+      session_->changed(Change::kPicture);
+    }
+    ImGui::EndMenu();
+  }
+  ImGui::TextDisabled("   %s", screen_->deviceName().c_str());
+  ImGui::EndMainMenuBar();
+}
+
+void Gui::keys(const WindowInput& input) {
+  const bool control =
+      held(*window_, GLFW_KEY_LEFT_CONTROL) || held(*window_, GLFW_KEY_RIGHT_CONTROL);
+  const bool shift = held(*window_, GLFW_KEY_LEFT_SHIFT) || held(*window_, GLFW_KEY_RIGHT_SHIFT);
+  for (const int key : input.keys) {
+    if (key == GLFW_KEY_F12 && shift)
+      capture_ = "verdure-window.png";
+    else if (key == GLFW_KEY_F12)
+      session_->saveScreenshot();
+    else if (control && key == GLFW_KEY_Q)
+      askToClose();
+    else if (ImGui::GetIO().WantTextInput)
+      continue;
+    else if (control && key == GLFW_KEY_O)
+      openDialog();
+    else if (control && key == GLFW_KEY_G)
+      asks_to_grow_ = true;
+    else if (control && key == GLFW_KEY_S && session_->scenePath().empty())
+      saveDialog();
+    else if (control && key == GLFW_KEY_S)
+      session_->saveScene(session_->scenePath());
+    else if (key == GLFW_KEY_TAB)
+      panels_ = !panels_;
+    else if (key == GLFW_KEY_HOME)
+      session_->showAll();
+    else if (key == GLFW_KEY_B && session_->shown() != nullptr)
+      session_->changed(Change::kBake, panel_state_.plant);
+    else if (key == GLFW_KEY_SPACE) {
+      session_->playing = !session_->playing;
+      if (session_->playing && !(session_->view().wind.speed > 0.0f)) {
+        session_->settings.wind.speed = 5.0f;
+        session_->changed(Change::kPicture);
+      }
+    }
+  }
+  for (const std::filesystem::path& path : input.dropped)
+    if (isPanorama(path)) {
+      session_->settings.daylight.sky = path.string();
+      session_->changed(Change::kPicture);
+    } else {
+      session_->open(path);
+    }
+}
+
+void Gui::moveCamera(double seconds) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const bool over = !io.WantCaptureMouse;
+  const bool pressed = io.MouseDown[0] || io.MouseDown[1] || io.MouseDown[2];
+  if (!pressed) drags_ = false;
+  for (int button = 0; button < 3; ++button)
+    if (over && ImGui::IsMouseClicked(button)) drags_ = true;
+  Camera camera = session_->camera();
+  const float height = std::max(io.DisplaySize.y, 1.0f);
+  const glm::vec2 delta = glm::vec2(io.MouseDelta.x, io.MouseDelta.y) / height;
+  bool moved = false;
+  if (drags_ && delta != glm::vec2(0.0f)) {
+    moved = true;
+    if (io.MouseDown[1])
+      camera =
+          lookedAround(camera, kTurnPerHeight * delta.x * 0.5f, -kTurnPerHeight * delta.y * 0.5f);
+    else if (io.MouseDown[2] || (io.MouseDown[0] && io.KeyShift))
+      camera = panned(camera, delta.x, delta.y);
+    else if (io.MouseDown[0])
+      camera = orbited(camera, -kTurnPerHeight * delta.x, kTurnPerHeight * delta.y);
+  }
+  const float reach = session_->reach();
+  if (over && io.MouseWheel != 0.0f) {
+    moved = true;
+    camera = zoomed(camera, std::pow(kZoomPerNotch, io.MouseWheel), 1e-3f * reach, 100.0f * reach);
+  }
+  moves_ = false;
+  if (!io.WantCaptureKeyboard && !io.KeyCtrl) {
+    const auto axis = [this](int forth, int back) {
+      return (held(*window_, forth) ? 1.0f : 0.0f) - (held(*window_, back) ? 1.0f : 0.0f);
+    };
+    const glm::vec3 fly(axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_E, GLFW_KEY_Q),
+                        axis(GLFW_KEY_W, GLFW_KEY_S));
+    if (fly != glm::vec3(0.0f)) {
+      // A pause is no long step.
+      const float step = 0.4f * reach * static_cast<float>(std::min(seconds, 0.25));
+      camera = flown(camera, step * fly.x, step * fly.y, step * fly.z);
+      moved = moves_ = true;
+    }
+  }
+  if (moved) session_->moveCamera(camera);
+}
+
+void Gui::drawPictures(const glm::vec2& at, const glm::vec2& size) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const int columns = session_->beside == Beside::kNothing ? 1 : 2;
+  const float width = size.x / static_cast<float>(columns);
+  for (int picture = 0; picture < columns; ++picture) {
+    const float left = at.x + width * static_cast<float>(picture);
+    if (void* texture = screen_->texture(picture))
+      list.AddImage(texture, {left, at.y}, {left + width, at.y + size.y});
+  }
+  if (columns == 1) return;
+  const float middle = at.x + width;
+  list.AddLine({middle, at.y}, {middle, at.y + size.y}, IM_COL32(255, 255, 255, 160));
+  const auto label = [&](float x, const std::string& text) {
+    const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
+    list.AddRectFilled({x, at.y + 6.0f}, {x + extent.x + 12.0f, at.y + extent.y + 14.0f},
+                       IM_COL32(0, 0, 0, 140));
+    list.AddText({x + 6.0f, at.y + 10.0f}, IM_COL32(255, 255, 255, 255), text.c_str());
+  };
+  label(at.x + 6.0f, session_->settings.look.light);
+  label(middle + 6.0f,
+        session_->beside == Beside::kPreset
+            ? session_->beside_light
+            : fmt::format("path tracer, {} paths a pixel", session_->tracedSamples()));
+}
+
+void Gui::drawSurface(const glm::vec2& at, const glm::vec2& size) {
+  const ShownScene* shown = session_->shown();
+  if (!session_->show_surface || shown == nullptr) return;
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const float width = session_->beside == Beside::kNothing ? size.x : 0.5f * size.x;
+  list.PushClipRect({at.x, at.y}, {at.x + width, at.y + size.y}, true);
+  const ImVec2 white = ImGui::GetFontTexUvWhitePixel();
+  const Scene& scene = shown->scene();
+  for (std::size_t p = 0; p < shown->loaded().plants().size(); ++p) {
+    const PlantBake* bake = shown->bake(p);
+    if (bake == nullptr) continue;
+    for (const SceneItem& item : scene.items) {
+      if (item.plant != &shown->loaded().plants()[p].plant || item.world_from_plant.empty())
+        continue;
+      const glm::mat4 world = worldFromPlant(scene, item, item.world_from_plant.front());
+      for (const OverlayTriangle& t :
+           overlayTriangles(bake->surface, world, session_->camera(), width / size.y)) {
+        list.PrimReserve(3, 3);
+        for (std::size_t c = 0; c < 3; ++c) {
+          const float rim = 1.0f - t.facing[c];
+          const auto alpha = static_cast<int>(40.0f + 170.0f * rim * rim);
+          list.PrimVtx({at.x + t.corners[c].x * width, at.y + t.corners[c].y * size.y}, white,
+                       IM_COL32(120, 190, 255, alpha));
+        }
+      }
+    }
+  }
+  list.PopClipRect();
+}
+
+void Gui::statusBar(float height) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({0.0f, size.y - height});
+  ImGui::SetNextWindowSize({size.x, height});
+  ImGui::Begin("##status", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
+  const auto status = session_->status();
+  if (status) {
+    const std::string text =
+        status->step.empty() ? status->title : status->title + ": " + status->step;
+    const float share = status->share >= 0.0
+                            ? static_cast<float>(status->share)
+                            : std::fmod(static_cast<float>(ImGui::GetTime()), 1.0f);
+    ImGui::ProgressBar(share, {0.35f * size.x, 0.0f}, text.c_str());
+    ImGui::SameLine();
+    if (session_->clipRuns() && ImGui::SmallButton("Stop")) session_->stopClip();
+    ImGui::SameLine();
+  }
+  if (!session_->message.empty()) {
+    if (ImGui::SmallButton("x")) session_->message.clear();
+    ImGui::SameLine();
+    ImGui::TextUnformatted(session_->message.c_str());
+  } else if (!status) {
+    ImGui::TextDisabled("Drag: orbit. Wheel: nearer. Right drag, W A S D: fly. Tab: panels.");
+  }
+  ImGui::End();
+}
+
+void Gui::growDialog() {
+  if (std::exchange(asks_to_grow_, false)) ImGui::OpenPopup("Grow a plant");
+  if (!ImGui::BeginPopupModal("Grow a plant", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+  std::vector<std::string> species;
+  for (const SpeciesInfo& info : speciesList()) species.push_back(info.name);
+  choice("species", grow_.species, species);
+  int seed = static_cast<int>(grow_.seed);
+  if (ImGui::InputInt("seed", &seed)) grow_.seed = static_cast<std::uint32_t>(std::max(seed, 0));
+  slider("leaf age", grow_.leaf_age, 0.0f, 1.0f, "%.2f");
+  int form = grow_.leaf_form == LeafForm::kMesh ? 0 : 1;
+  constexpr std::array kForms{"folded blades", "one quad a leaf"};
+  if (choice("leaves", form, kForms))
+    grow_.leaf_form = form == 0 ? LeafForm::kMesh : LeafForm::kCard;
+  if (ImGui::Button("Grow", {90.0f, 0.0f})) {
+    session_->grow(grow_);
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::SameLine();
+  if (ImGui::Button("Cancel", {90.0f, 0.0f})) ImGui::CloseCurrentPopup();
+  ImGui::EndPopup();
+}
+
+void Gui::clipDialog() {
+  if (std::exchange(asks_for_clip_, false)) ImGui::OpenPopup("Save a clip");
+  if (!ImGui::BeginPopupModal("Save a clip", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+  ImGui::InputText("file", &clip_path_);
+  ImGui::InputInt("frames", &clip_frames_);
+  ImGui::InputInt("frames a second", &clip_fps_);
+  clip_frames_ = std::clamp(clip_frames_, 1, 100000);
+  clip_fps_ = std::clamp(clip_fps_, 1, 240);
+  ImGui::TextDisabled(".mp4, .webm or .gif by ffmpeg; .png: numbered pictures");
+  if (ImGui::Button("Save", {90.0f, 0.0f})) {
+    session_->startClip(clip_path_, clip_frames_, clip_fps_);
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::SameLine();
+  if (ImGui::Button("Cancel", {90.0f, 0.0f})) ImGui::CloseCurrentPopup();
+  ImGui::EndPopup();
+}
+
+void Gui::closeDialog() {
+  if (asks_to_close_ && !closes_) ImGui::OpenPopup("Close without saving?");
+  if (!ImGui::BeginPopupModal("Close without saving?", nullptr, ImGuiWindowFlags_AlwaysAutoResize))
+    return;
+  ImGui::TextUnformatted("The scene has changes that are in no file.");
+  if (ImGui::Button("Close", {90.0f, 0.0f})) closes_ = true;
+  ImGui::SameLine();
+  if (ImGui::Button("Cancel", {90.0f, 0.0f})) {
+    asks_to_close_ = false;
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+}
+
+void Gui::updateTitle() {
+  const auto status = session_->status();
+  const std::string title =
+      fmt::format("{}{} - verdure{}", session_->name(), session_->modified() ? " *" : "",
+                  status ? " (" + status->title + ")" : "");
+  if (title == title_) return;
+  title_ = title;
+  window_->setTitle(title);
+}
+
+void Gui::frame(const WindowInput& input, double seconds) {
+  session_->poll();
+  session_->advance(seconds);
+  updateTitle();
+  const glm::ivec2 pixels = window_->size();
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+  keys(input);
+  menu();
+  const ImVec2 display = ImGui::GetIO().DisplaySize;
+  const float top = ImGui::GetFrameHeight();
+  const float bottom = ImGui::GetFrameHeightWithSpacing() + 8.0f;
+  const float left = panels_ ? std::min(kPanelWidth * window_->scale(), 0.6f * display.x) : 0.0f;
+  if (panels_) {
+    ImGui::SetNextWindowPos({0.0f, top});
+    ImGui::SetNextWindowSize({left, std::max(display.y - top - bottom, 1.0f)});
+    ImGui::Begin("##panels", nullptr,
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
+    drawPanels(*session_, panel_state_);
+    ImGui::End();
+  }
+  statusBar(bottom);
+  files_.draw();
+  growDialog();
+  clipDialog();
+  closeDialog();
+  moveCamera(seconds);
+  const glm::vec2 at(left, top), size(display.x - left, display.y - top - bottom);
+  if (pixels.x > 0 && pixels.y > 0 && size.x >= 1.0f && size.y >= 1.0f) {
+    session_->draw(glm::ivec2(size));
+    drawPictures(at, size);
+    drawSurface(at, size);
+  }
+  ImGui::Render();
+  if (pixels.x <= 0 || pixels.y <= 0) return;
+  Image shown;
+  if (!screen_->present(*ImGui::GetDrawData(), capture_.empty() ? nullptr : &shown)) return;
+  if (capture_.empty()) return;
+  try {
+    if (shown.empty()) throw Error(capture_.string(), "the driver cannot read the window");
+    writePng(shown, capture_);
+    session_->message = "saved " + capture_.string();
+  } catch (const std::exception& e) {
+    session_->message = e.what();
+  }
+  capture_.clear();
+}
+
+}  // namespace verdure::app

@@ -1,0 +1,409 @@
+#include "app/view/view_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "shared/tone.h"
+#include "verdure/error.h"
+
+namespace verdure::app {
+namespace {
+
+// Pictures that take longer are drawn smaller while something moves.
+constexpr double kSlow_s = 0.1, kFast_s = 0.045;
+constexpr float kLeastScale = 0.3f;
+constexpr double kRest_s = 0.25;
+
+bool same(const DaylightSettings& a, const DaylightSettings& b) {
+  const bool same_place = a.place.has_value() == b.place.has_value() &&
+                          (!a.place || (a.place->latitude_deg == b.place->latitude_deg &&
+                                        a.place->longitude_deg == b.place->longitude_deg));
+  return a.sky == b.sky && a.sun_deg == b.sun_deg && a.date == b.date && same_place &&
+         a.turbidity == b.turbidity;
+}
+
+/// The preset `expressive` means the field of its paper.
+BakeField fieldOf(const LookSettings& look) {
+  return look.light == "expressive" ? BakeField::kMetaball : BakeField::kOpticalDepth;
+}
+
+bool bakedInFile(const Plant& plant) {
+  return std::any_of(plant.meshes.begin(), plant.meshes.end(),
+                     [](const Mesh& mesh) { return !mesh.ambient.empty(); });
+}
+
+bool allLit(const Scene& scene) {
+  return scene.forest == nullptr &&
+         std::all_of(scene.items.begin(), scene.items.end(),
+                     [](const SceneItem& item) { return item.light != nullptr; });
+}
+
+std::string fileName(const std::filesystem::path& path) {
+  return path.filename().string();
+}
+
+}  // namespace
+
+ViewSession::ViewSession(Screen& screen, const std::function<void()>& wake)
+    : screen_(&screen), tracer_(wake), job_(wake) {
+  rebuildView();
+}
+
+void ViewSession::fail(const std::exception& problem) {
+  message = problem.what();
+}
+
+void ViewSession::changed(Change change, std::size_t plant) {
+  if (change == Change::kNothing) return;
+  modified_ = true;
+  if (change == Change::kScene) return load(false);
+  if (change == Change::kBake) {
+    stale_bakes_.insert(plant);
+    bake();
+  }
+  rebuildView();
+}
+
+View ViewSession::viewWith(const LookSettings& look) const {
+  SceneSettings wanted = settings;
+  wanted.look = look;
+  // Another sky takes time, a panorama much: it is made only if it is another.
+  const bool same_sky = daylight_of_ && same(*daylight_of_, settings.daylight);
+  if (same_sky) wanted.daylight = {};
+  wanted.camera.eye = view_.camera.eye;  // not looked for in the scene
+  wanted.camera.target = view_.camera.target;
+  View view = shown_ ? shown_->loaded().view(wanted) : viewOf(wanted);
+  view.camera = view_.camera;
+  view.camera.vertical_fov = static_cast<float>(settings.camera.fov_deg * M_PI / 180.0);
+  if (same_sky) view.daylight = view_.daylight;
+  return view;
+}
+
+void ViewSession::rebuildView() {
+  try {
+    view_ = viewWith(settings.look);
+    daylight_of_ = settings.daylight;
+    if (beside == Beside::kPreset) {
+      LookSettings other = settings.look;
+      other.light = beside_light;
+      other.terms.reset();
+      other.shadows.reset();
+      beside_view_ = viewWith(other);
+    }
+    message.clear();
+  } catch (const std::exception& e) {
+    fail(e);
+  }
+  dirty_[0] = dirty_[1] = true;
+  since_change_.lap();
+}
+
+void ViewSession::open(const std::filesystem::path& path) {
+  try {
+    if (isSceneFile(path)) {
+      settings = readScene(path);
+      scene_path_ = path;
+    } else {
+      SceneSettings scene;
+      scene.width = settings.width;
+      scene.height = settings.height;
+      PlantSettings& plant = scene.plants.emplace_back();
+      plant.name = path.stem().string();
+      plant.file = path.string();
+      settings = std::move(scene);
+      scene_path_.clear();
+    }
+  } catch (const std::exception& e) {
+    return fail(e);
+  }
+  name_ = fileName(path);
+  modified_ = false;
+  load(true);
+}
+
+void ViewSession::grow(const GrowOptions& options) {
+  SceneSettings scene;
+  scene.width = settings.width;
+  scene.height = settings.height;
+  scene.plants.emplace_back().name = options.species;
+  scene.plants.back().grow = options;
+  settings = std::move(scene);
+  scene_path_.clear();
+  name_ = options.species;
+  modified_ = true;
+  load(true);
+}
+
+void ViewSession::load(bool new_scene) {
+  message.clear();
+  job_.cancel();
+  job_.start("loading", [this, new_scene, wanted = settings](BackgroundJob::Control& control) {
+    LoadSceneOptions options;
+    options.any_look = true;
+    options.progress = [&control](const std::string& step, double share) {
+      control.show(step, share);
+    };
+    auto shown =
+        std::make_shared<const ShownScene>(std::make_shared<const LoadedScene>(wanted, options));
+    control.show("packing", -1.0);
+    const std::shared_ptr<PackedScene> packed = packedScene(shown->scene());
+    SceneSettings all = wanted;
+    all.camera.eye.reset();
+    const Camera home = cameraOf(all, shown->scene());
+    control.handOver([this, new_scene, wanted, shown, packed, home] {
+      try {
+        screen_->setScene(packed);
+      } catch (const std::exception& e) {
+        return fail(e);
+      }
+      shown_ = shown;
+      home_ = home;
+      ++scene_number_;
+      stale_bakes_.clear();
+      if (new_scene) {
+        view_.camera = home;
+        if (wanted.camera.eye)
+          view_.camera = {*wanted.camera.eye, wanted.camera.target, home.vertical_fov};
+      }
+      rebuildView();
+      tracing_stale_ = true;
+    });
+  });
+}
+
+void ViewSession::lightChanged(const LookSettings& before) {
+  if (!shown_ || fieldOf(before) == fieldOf(settings.look)) return;
+  for (std::size_t p = 0; p < settings.plants.size(); ++p)
+    if (!settings.plants[p].bake && p < shown_->loaded().plants().size() &&
+        !bakedInFile(shown_->loaded().plants()[p].plant))
+      stale_bakes_.insert(p);
+  if (!stale_bakes_.empty()) bake();
+}
+
+void ViewSession::bake() {
+  if (!shown_) return;
+  const std::size_t count = std::min(shown_->loaded().plants().size(), settings.plants.size());
+  std::erase_if(stale_bakes_, [count](std::size_t plant) { return plant >= count; });
+  job_.start("baking", [this, shown = shown_, plants = stale_bakes_, wanted = settings.plants,
+                        field = fieldOf(settings.look)](BackgroundJob::Control& control) {
+    std::shared_ptr<const ShownScene> next = shown;
+    // First as it can be seen at once, then as it is to be.
+    for (const bool preview : {true, false})
+      for (const std::size_t p : plants) {
+        const LoadedPlant& plant = next->loaded().plants()[p];
+        auto made = std::make_shared<const PlantBake>(
+            bakePlant(plant.plant, plant.light ? &*plant.light : nullptr,
+                      wanted[p].bake.value_or(BakeParameters()), field, preview,
+                      [&](const std::string& step, double share) {
+                        control.show((preview ? "preview: " : "") + step, share, !preview);
+                      }));
+        next = next->with(p, made);
+        const bool whole = !allLit(next->scene());
+        const auto light = whole ? nullptr : packedLight(next->scene());
+        const auto packed = whole ? packedScene(next->scene()) : nullptr;
+        control.handOver([this, next, light, packed, p, preview] {
+          if (!shown_ || &shown_->loaded() != &next->loaded()) return;
+          try {
+            if (!light || !screen_->setLight(*light))
+              screen_->setScene(packed ? packed : packedScene(next->scene()));
+          } catch (const std::exception& e) {
+            return fail(e);
+          }
+          shown_ = next;
+          if (!preview) stale_bakes_.erase(p);
+          dirty_[0] = dirty_[1] = true;
+        });
+      }
+  });
+}
+
+void ViewSession::saveScene(const std::filesystem::path& path) {
+  try {
+    SceneSettings saved = settings;
+    saved.camera.eye = view_.camera.eye;
+    saved.camera.target = view_.camera.target;
+    writeScene(saved, path);
+    scene_path_ = path;
+    name_ = fileName(path);
+    modified_ = false;
+    message.clear();
+  } catch (const std::exception& e) {
+    fail(e);
+  }
+}
+
+void ViewSession::savePlant(std::size_t plant, const std::filesystem::path& path) {
+  if (!shown_ || plant >= shown_->loaded().plants().size()) return;
+  job_.start("saving", [shown = shown_, plant, path](BackgroundJob::Control& control) {
+    control.show(fileName(path), -1.0);
+    const LoadedPlant& loaded = shown->loaded().plants()[plant];
+    const CrownLight* light = loaded.light ? &*loaded.light : nullptr;
+    if (const PlantBake* bake = shown->bake(plant)) light = &bake->light;
+    verdure::savePlant(loaded.plant, light, path);
+  });
+}
+
+void ViewSession::saveScreenshot(std::filesystem::path path) {
+  try {
+    for (int n = 1; path.empty() && n < 10000; ++n) {
+      const std::filesystem::path next = fmt::format("verdure-{:04}.png", n);
+      if (!std::filesystem::exists(next)) path = next;
+    }
+    View view = view_;
+    const glm::ivec2 size = drawn_size_[0];
+    if (size.x > 0 && !coarse_) std::tie(view.width, view.height) = std::tie(size.x, size.y);
+    writePng(screen_->read(view).image, path);
+    message = "saved " + path.string();
+  } catch (const std::exception& e) {
+    fail(e);
+  }
+}
+
+void ViewSession::startClip(const std::filesystem::path& path, int frames, int fps) {
+  try {
+    clip_.reset();
+    clip_.emplace(path.string(), fps, frames);
+    clip_->view = view_;
+    clip_->view.width = settings.width;
+    clip_->view.height = settings.height;
+    message.clear();
+  } catch (const std::exception& e) {
+    clip_.reset();
+    fail(e);
+  }
+}
+
+void ViewSession::drawClipFrame() {
+  try {
+    Clip& clip = *clip_;
+    const Frame frame = screen_->read(clip.view);
+    clip.video.add(frame.image, clip.next);
+    if (clip.next == 0) {  // lit and exposed as its first
+      if (!clip.view.exposure.ev && frame.average_luminance > 0.0f)
+        clip.view.exposure.ev = std::log2(frame.average_luminance / shared::meteredLuminance(0.0f));
+      clip.view.exposure.white = frame.white;
+      clip.view.shadow_cascades = frame.shadow_cascades;
+    }
+    clip.view.seconds += 1.0 / clip.fps;
+    if (++clip.next < clip.frames) return;
+    clip.video.finish();
+    message = fmt::format("saved a clip of {} frames", clip.frames);
+    clip_.reset();
+  } catch (const std::exception& e) {
+    clip_.reset();
+    fail(e);
+  }
+}
+
+void ViewSession::moveCamera(const Camera& camera) {
+  view_.camera = camera;
+  dirty_[0] = dirty_[1] = true;
+  since_change_.lap();
+}
+
+void ViewSession::showAll() {
+  const float fov = view_.camera.vertical_fov;
+  moveCamera(home_);
+  view_.camera.vertical_fov = fov;
+}
+
+float ViewSession::reach() const {
+  return std::max(glm::length(home_.eye - home_.target), 1e-3f);
+}
+
+void ViewSession::poll() {
+  job_.poll();
+  for (std::optional<std::string> error : {job_.takeError(), tracer_.takeError()})
+    if (error) message = *error;
+  if (beside != Beside::kTracer) return;
+  if (const std::optional<Image> picture = tracer_.takePicture()) {
+    try {
+      screen_->setPicture(1, *picture);
+    } catch (const std::exception& e) {
+      fail(e);
+    }
+  }
+}
+
+void ViewSession::advance(double seconds) {
+  if (clip_) return;
+  if (!playing) return;
+  view_.seconds += seconds;
+  settings.wind.seconds = view_.seconds;
+  dirty_[0] = dirty_[1] = true;
+  since_change_.lap();
+}
+
+void ViewSession::draw(const glm::ivec2& area) {
+  if (clip_) return drawClipFrame();
+  const int columns = beside == Beside::kNothing ? 1 : 2;
+  const glm::ivec2 full = glm::max(glm::ivec2(area.x / columns, area.y), glm::ivec2(1));
+  if (area != area_) since_change_.lap();
+  area_ = area;
+  const bool moves = since_change_.seconds() < kRest_s;
+  const float scale = moves ? scale_ : 1.0f;
+  const glm::ivec2 size = glm::max(glm::ivec2(glm::vec2(full) * scale), glm::ivec2(1));
+  if (coarse_ && !moves) dirty_[0] = dirty_[1] = true;
+  for (int picture = 0; picture < columns; ++picture) {
+    const bool traced = picture == 1 && beside == Beside::kTracer;
+    // A smaller picture that is up to date is better than none while a window is resized.
+    if (!dirty_[picture] && (drawn_size_[picture] == size || coarse_)) continue;
+    if (traced) {
+      if (tracer_.busy()) tracer_.stop();
+      dirty_[1] = false;
+      tracing_stale_ = true;
+      drawn_size_[1] = size;
+      continue;
+    }
+    try {
+      View view = picture == 0 ? view_ : beside_view_;
+      view.camera = view_.camera;
+      view.seconds = view_.seconds;
+      view.width = size.x;
+      view.height = size.y;
+      const Timer timer;
+      frames_[picture] = screen_->draw(picture, view);
+      draw_seconds_ = timer.seconds();
+      if (moves && draw_seconds_ > kSlow_s) scale_ = std::max(scale_ * 0.75f, kLeastScale);
+      if (moves && draw_seconds_ < kFast_s) scale_ = std::min(scale_ * 1.15f, 1.0f);
+    } catch (const std::exception& e) {
+      fail(e);
+    }
+    dirty_[picture] = false;
+    drawn_size_[picture] = size;
+  }
+  coarse_ = scale < 1.0f;
+  if (beside != Beside::kTracer) {
+    if (tracer_.busy()) tracer_.stop();
+    tracing_stale_ = true;
+  } else if (tracing_stale_ && !moves && shown_ && !job_.busy()) {
+    tracing_stale_ = false;
+    View view = view_;
+    view.width = full.x;
+    view.height = full.y;
+    tracer_.start({settings, scene_number_, view, frames_[0].average_luminance, frames_[0].white});
+  }
+}
+
+double ViewSession::rest() const {
+  if (playing || clip_ || dirty_[0]) return 0.0;
+  if (coarse_ || (beside == Beside::kTracer && tracing_stale_))
+    return std::max(kRest_s - since_change_.seconds(), 1e-3);
+  return status() ? 0.1 : 1.0;
+}
+
+bool ViewSession::settled() const {
+  return !job_.busy() && !clip_ && !coarse_ && !dirty_[0] && stale_bakes_.empty();
+}
+
+std::optional<BackgroundJob::Status> ViewSession::status() const {
+  if (clip_)
+    return BackgroundJob::Status{"clip", fmt::format("frame {} of {}", clip_->next, clip_->frames),
+                                 static_cast<double>(clip_->next) / clip_->frames};
+  if (auto status = job_.status()) return status;
+  return beside == Beside::kTracer ? tracer_.status() : std::nullopt;
+}
+
+}  // namespace verdure::app

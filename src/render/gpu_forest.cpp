@@ -196,6 +196,7 @@ void GpuForest::setWind(const std::optional<Wind>& wind) {
   wind_ = wind;
   moves_ = wind.has_value() && packed_.motion_seats > 0;
   tallest_m_ = 0.0f;
+  largest_ = {glm::vec3(0.0f), glm::vec3(0.0f)};
   for (std::size_t k = 0; k < kind_data_.size(); ++k) {
     const PackedForestKind& kind = packed_.kinds[k];
     shared::ForestKindData& data = kind_data_[k];
@@ -206,6 +207,13 @@ void GpuForest::setWind(const std::optional<Wind>& wind) {
     }
     data.sphere = glm::vec4(box.center(), 0.5f * glm::length(box.size()));
     data.moves = moves_ && kind.tables != nullptr ? 1 : 0;
+    const glm::vec2 aside = glm::max(glm::abs(glm::vec2(box.min.x, box.min.z)),
+                                     glm::abs(glm::vec2(box.max.x, box.max.z)));
+    const float around = glm::length(aside);
+    largest_.min =
+        glm::min(largest_.min, packed_.largest_scale * glm::vec3(-around, box.min.y, -around));
+    largest_.max =
+        glm::max(largest_.max, packed_.largest_scale * glm::vec3(around, box.max.y, around));
     tallest_m_ = std::max(
         tallest_m_, packed_.largest_scale * (glm::length(glm::vec3(data.sphere)) + data.sphere.w));
   }
@@ -278,11 +286,10 @@ Bounds GpuForest::casterBounds(const glm::vec3& eye) const {
   const glm::vec3 step = glm::round(eye / kCasterStep_m) * kCasterStep_m;
   const float reach = kShadowRange_m + kCasterStep_m;
   Bounds box;
-  box.min = glm::max(low_, step - reach) - tallest_m_;
-  box.max = glm::min(high_, step + reach) + tallest_m_;
-  if (glm::any(glm::greaterThan(box.min, box.max))) box.min = box.max = glm::min(high_, step);
-  box.min.y = low_.y - tallest_m_;
-  box.max.y = high_.y + tallest_m_;
+  box.min = glm::min(glm::max(low_, step - reach), high_) + largest_.min;
+  box.max = glm::max(glm::min(high_, step + reach), low_) + largest_.max;
+  box.min.y = low_.y + largest_.min.y;
+  box.max.y = high_.y + largest_.max.y;
   return box;
 }
 
@@ -387,6 +394,7 @@ void ForestPass::record(const vk::raii::CommandBuffer& commands, const GpuForest
   if (forest.moves()) {  // first: what is drawn reads where its motion is
     choose(GpuForest::kMotionView, 1);
     turn(forest.slots_, Use::kComputeStorage, Use::kComputeStorage);
+    turn(forest.ranges_, Use::kComputeStorage, Use::kComputeStorage);
     turn(forest.counts_, Use::kComputeStorage, Use::kComputeStorage);
   }
   choose(0, forest.view_count_);

@@ -83,6 +83,7 @@ class GpuForest {
   bool moves_ = false;
   glm::vec3 low_{0.0f}, high_{0.0f};  ///< of all places
   float tallest_m_ = 0.0f;            ///< of any tree, its farthest point from its place
+  Bounds largest_;                    ///< of any tree, however it is turned, from its place
 };
 
 /// Chooses: before anything that draws or moves trees.

@@ -188,21 +188,13 @@ PackedForest packForest(const Forest& forest) {
 
 float distanceOfNearest(const PackedForest& forest, const glm::vec3& eye, std::uint32_t most) {
   if (forest.places.size() <= most) return std::numeric_limits<float>::max();
-  std::vector<std::pair<float, std::uint32_t>> near;
-  for (std::size_t c = 0; c < forest.clusters.size(); ++c) {
-    const glm::vec4& sphere = forest.clusters[c];
-    const std::size_t members = std::min<std::size_t>(
-        shared::kForestGroup, forest.places.size() - c * shared::kForestGroup);
-    near.emplace_back(std::max(glm::length(glm::vec3(sphere) - eye) - sphere.w, 0.0f),
-                      static_cast<std::uint32_t>(members));
-  }
-  std::sort(near.begin(), near.end());
-  std::uint32_t sum = 0;
-  for (const auto& [distance, members] : near) {
-    sum += members;
-    if (sum > most) return distance;
-  }
-  return std::numeric_limits<float>::max();
+  std::vector<float> distances(forest.places.size());
+  parallelFor(distances.size(), 1 << 14, [&](std::size_t i) {
+    const shared::ForestPlace& place = forest.places[i];
+    distances[i] = glm::length(glm::vec3(place.x, place.y, place.z) - eye);
+  });
+  std::nth_element(distances.begin(), distances.begin() + most, distances.end());
+  return distances[most];
 }
 
 glm::vec4 levelReach(const PackedForestKind& kind, float pixels_per_m, float detail) {

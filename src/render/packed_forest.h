@@ -52,8 +52,7 @@ struct PackedForest {
 /// scale that is not above 0, a position that is not finite, a detail out of range.
 PackedForest packForest(const Forest& forest);
 
-/// The farthest distance from `eye` within which at most `most` places lie: exact to a cluster, and
-/// never too far.
+/// The farthest distance from `eye` within which at most `most` places lie.
 float distanceOfNearest(const PackedForest& forest, const glm::vec3& eye, std::uint32_t most);
 
 /// How far each mesh of a kind is drawn, m at scale 1, for pictures with so many pixels a metre at

@@ -29,7 +29,7 @@ Image makePaper(int size) {
       const float felt =
           0.55f * fractalNoise(u, v, 64, 64, 3, 11) + 0.45f * std::min(dimple.nearest * 1.3f, 1.0f);
       std::uint8_t* texel = paper.at(x, y);
-      texel[0] = spread(felt, 2.0f);
+      texel[0] = spread(felt, 2.2f);
       texel[1] = spread(fractalNoise(u, v, 5, 5, 5, 23), 1.7f);
       texel[2] = spread(fractalNoise(u, v, 7, 7, 4, 41), 1.7f);
       texel[3] = 255;

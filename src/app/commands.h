@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "app/bake_parameters.h"
-#include "app/ground_options.h"
-#include "app/scene_options.h"
+#include "app/parse.h"
+#include "app/plant_prep.h"
+#include "app/scene_settings.h"
 #include "verdure/density.h"
 #include "verdure/grow.h"
 #include "verdure/leaf_files.h"
@@ -104,44 +105,24 @@ struct BakeCommand {
 };
 void runBake(const BakeCommand& command);
 
-/// How a scene is lit.
-struct DaylightOptions {
-  std::string sky = "preetham";
-  std::string sun;          ///< AZIMUTH,ELEVATION; empty = 85,42 (of a panorama: its own)
-  std::string date, place;  ///< instead: both, or neither
-  double turbidity = 3.0;
-};
-Daylight parseDaylight(const DaylightOptions& options);
-
-/// How light becomes a picture.
-struct ExposureOptions {
-  std::string exposure = "auto";
-  double key = 0.3;
-  std::string white = "auto";
-  double bloom = 0.01;
-};
-Exposure parseExposure(const ExposureOptions& options);
-float parseBloom(const ExposureOptions& options);
-
-struct RenderCommand : SceneOptions {
-  std::string output;
-  GroundOptions ground;
+/// What a picture is made of: a plant with options, or a scene file that options change.
+struct SceneCommand {
+  std::string input;    ///< plant or scene; may be empty
+  SceneSettings scene;  ///< as read and changed so far
+  LoadOptions load;     ///< of all plants, where it says anything
   BakeParameters bake;
-  bool bake_again =
-      false;  ///< parameters of the bake were given: the file's own light is not theirs
-  std::string light = "best";
-  std::string terms;
-  std::string shadows;  ///< empty: the light's own
-  DaylightOptions daylight;
-  ExposureOptions exposure;
-  int bands = 5;
-  float visibility_exponent = 1.0f;
-  std::string background;
-  int shadow_map = 2048;
-  std::string cascades = "auto";
-  std::string style = "photo", style_normals = "scaled";
+  bool bake_again = false;  ///< parameters of the bake were given: they are those of all plants
+  std::string save_scene;   ///< file
+
+  /// The scene with what was given for all its plants.
+  SceneSettings settings() const;
+  /// Writes `settings` where that was asked for.
+  void save(const SceneSettings& settings) const;
+};
+
+struct RenderCommand : SceneCommand {
+  std::string output;
   DeviceOptions device;
-  WindOptions wind;
   std::string frames;  ///< FIRST:LAST; empty: one picture
   int fps = 24;
   std::string motion_vectors;  ///< file
@@ -149,16 +130,13 @@ struct RenderCommand : SceneOptions {
 };
 void runRender(const RenderCommand& command);
 
-struct ReferenceCommand : SceneOptions {
+struct ReferenceCommand : SceneCommand {
   std::string output;
-  DaylightOptions daylight;
-  ExposureOptions exposure;
   int samples = 64;
   double seconds = 0.0;
   double noise = 0.0;
   int bounces = 32;
   std::uint32_t seed = 1;
-  WindOptions wind;
   bool json = false;
 };
 void runReference(const ReferenceCommand& command);
@@ -244,16 +222,6 @@ void bakePopulation(const BakeCommand& command);
 
 /// Throws Error unless a file can be written at `path` and its name ends in one of `extensions`.
 void checkOutput(const std::string& path, const std::vector<std::string>& extensions);
-/// "960x720" to two numbers. Throws Error.
-std::pair<int, int> parseSize(const std::string& text);
-/// Comma-separated numbers; throws Error unless there are `count` of them (0: any).
-std::vector<float> parseNumbers(const std::string& option, const std::string& text,
-                                std::size_t count);
-/// The light that a file brought along in `_AO`, `_VISIBILITY` and NORMAL, if it has any.
-std::optional<CrownLight> lightOfFile(const Plant& plant);
-/// Where a plant stands: on the zero of its own heights, where strands may hang below it; one that
-/// was modelled around or away from it stands on its lowest point.
-float groundHeight(const Plant& plant);
 /// What a bake's rays found, beside the light that it changed.
 struct RayReport {
   std::optional<PlantTransfer> transfer;

@@ -40,7 +40,7 @@ class FigureSet {
   static View viewOf(const FiguresCommand& command) {
     View view;
     std::tie(view.width, view.height) = parseSize(command.size);
-    view.daylight = parseDaylight({});
+    view.daylight = daylightOf({});
     return view;
   }
 

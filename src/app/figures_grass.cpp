@@ -370,7 +370,8 @@ void runGrassFigures(const FiguresCommand& command) {
   FigureSet figures(command, "Grass as a material",
                     "Figures 2.9 to 2.16 of Habel, \"Real-time Rendering and Animation of "
                     "Vegetation\" (2009), from verdure's grass on ");
-  figures.view().daylight = parseDaylight({.sun = "60,50", .date = {}, .place = {}});
+  figures.view().daylight =
+      daylightOf({.sun_deg = glm::vec2(60.0f, 50.0f), .date = {}, .place = {}});
   Progress progress("figures grass");
   progress.show("growing");
   const GrassSet set = growGrass(species);

@@ -102,7 +102,7 @@ void drawIndirect(FigureSet& figures, const Scene& scene) {
 
 /// A summer's day; `sky_alone`: exposed for pictures without the sun's light.
 void daylight(FigureSet& figures, bool sky_alone = false) {
-  figures.view().daylight = parseDaylight({});
+  figures.view().daylight = daylightOf({});
   figures.view().background.reset();
   figures.view().exposure.ev.reset();
   if (sky_alone) figures.view().exposure.ev = 13.0f;

@@ -246,7 +246,7 @@ void drawNumbers(Page& page, const LeafSubject& subject) {
 
 void lightLeaf(FigureSet& figures, float elevation, bool behind) {
   View& view = figures.view();
-  view.daylight = parseDaylight({});
+  view.daylight = daylightOf({});
   view.daylight.sky = nullptr;
   const float out = behind ? -std::sin(elevation) : std::sin(elevation);
   view.daylight.sun.direction =

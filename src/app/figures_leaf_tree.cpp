@@ -83,7 +83,7 @@ void drawLeafTree(FigureSet& figures, const std::string& species) {
   View& view = figures.view();
   view.background.reset();
   view.exposure = {};
-  view.daylight = parseDaylight({});
+  view.daylight = daylightOf({});
   const Terms ours = presetTerms("habel");
   Terms even = ours;
   even.leaf = LeafModel::kDiffuse;

@@ -62,15 +62,31 @@ class LoadedScene {
   std::string lightName() const;
 
  private:
+  void show(const std::string& step, double share = -1.0) const;
+  void loadPlants();
+  void lightPlants(const View& look);
+  void addVisibility(LoadedPlant& plant);
+  void makeGround();
+  void placePlants();
+  std::vector<Placement> allPlaces();
+  std::vector<Placement> scatter(const ScatterSettings& settings,
+                                 const std::vector<Placement>& before) const;
+  void makeLevelsOfMany();
+  void linkForest();
+  void moveInWind(const Wind& wind, double seconds);
+  bool hasTransfer() const;
+  View withoutMissingTransfer(View view) const;
+
   SceneSettings settings_;
   LoadSceneOptions options_;
   std::vector<LoadedPlant> plants_;
   std::optional<Terrain> terrain_;
   std::vector<GrassSet> grass_;
   std::vector<std::optional<CoverMap>> covers_;
-  std::vector<std::pair<std::size_t, glm::mat4>> singles_;  ///< plants that stand once
+  std::vector<std::pair<std::size_t, glm::mat4>> singles_;  ///< plants that are drawn whole
   Forest forest_;
   float ground_height_ = 0.0f;
+  std::optional<Camera> rest_camera_;  ///< of the reference: found before plants moved
   std::vector<std::string> notes_;
   double bake_seconds_ = 0.0;
 };

@@ -8,6 +8,7 @@
 #include "app/commands.h"
 #include "app/grass_commands.h"
 #include "app/option_groups.h"
+#include "app/view/view_command.h"
 #include "base/parallel.h"
 #include "verdure/error.h"
 
@@ -228,69 +229,53 @@ int run(int argc, char** argv) {
   export_app->add_flag("--json", wind_files.json, "Print JSON");
 
   RenderCommand render;
-  CLI::App* render_app = app.add_subcommand("render", "Render a plant to a picture");
+  CLI::App* render_app = app.add_subcommand("render", "Render a plant or a scene to a picture");
   addSceneOptions(*render_app, render);
-  addGroundOptions(*render_app, render.ground);
+  addGroundOptions(*render_app, render.scene.ground);
   render_app
       ->add_option("-o,--output", render.output,
                    "File to write: .png, or .exr in kcd/m^2; for a film see --frames")
       ->required();
+  addLookOptions(*render_app, render.scene.look);
+  addDaylightOptions(*render_app, render.scene.daylight);
+  addExposureOptions(*render_app, render.scene.exposure);
   render_app
-      ->add_option("--light", render.light,
-                   "best, standard, expressive, transfer, depth-maps or habel")
+      ->add_option("--bloom", render.scene.exposure.bloom,
+                   "Share of light that the lens spreads, 0 to 1")
       ->capture_default_str();
-  render_app->add_option("--terms", render.terms,
-                         "Only these terms: ambient,diffuse,specular,shadow,textures,transmission,"
-                         "scattering,gloss");
-  render_app->add_option(
-      "--shadows", render.shadows,
-      "Instead of the light's own: map, or depth maps of leaves: paper, layers or "
-      "ordered");
-  addDaylightOptions(*render_app, render.daylight);
-  addExposureOptions(*render_app, render.exposure);
-  render_app
-      ->add_option("--bloom", render.exposure.bloom, "Share of light that the lens spreads, 0 to 1")
-      ->capture_default_str();
-  render_app->add_option("--bands", render.bands, "Bands of harmonics of the sky's light, 2 to 7")
-      ->capture_default_str();
-  render_app
-      ->add_option("--visibility-exponent", render.visibility_exponent,
-                   "Of leaf visibility: above 1 leaves darken rapidly inwards, below slowly")
-      ->capture_default_str();
-  render_app->add_option("--background", render.background, "R,G,B in [0, 1] instead of the sky");
-  render_app->add_option("--shadow-map", render.shadow_map, "Side of the shadow map, pixels")
-      ->capture_default_str();
-  render_app
-      ->add_option("--cascades", render.cascades, "Shadow maps, finer near the eye: auto or 1 to 4")
-      ->capture_default_str();
-  render_app->add_option("--style", render.style, "photo, edges, toon, watercolour or normals")
-      ->capture_default_str();
-  render_app
-      ->add_option("--style-normals", render.style_normals,
-                   "What drawn styles take: raw, realigned or scaled (by the ambient coefficient)")
-      ->capture_default_str();
-  addWindOptions(*render_app, render.wind);
+  addWindOptions(*render_app, render.scene.wind);
   render_app->add_option(
       "--frames", render.frames,
       "FIRST:LAST: a film (.mp4, .webm or .gif by ffmpeg) or numbered pictures (.png)");
   render_app->add_option("--fps", render.fps, "Frames a second, 1 to 240")->capture_default_str();
   render_app->add_option("--motion-vectors", render.motion_vectors,
                          "Write how far each pixel has come since the last frame: .exr, pixels");
+  render_app->add_option("--save-scene", render.save_scene, "Scene file to write, too: .json");
   addDeviceOptions(*render_app, render.device);
   constexpr const char* kBakeGroup = "Density field (given any, the file's own bake is left)";
   addBakeOptions(*render_app, render.bake, kBakeGroup);
   render_app->add_flag("--json", render.json, "Print times as JSON");
 
+  ViewCommand view;
+  CLI::App* view_app = app.add_subcommand("view", "Look at a plant or a scene in a window");
+  view_app->add_option("file", view.input,
+                       "Plant: .glb .gltf .obj .fbx .dae .ply; or scene: .json");
+  view_app->add_option("--size", view.size, "WxH of the window, pixels")->capture_default_str();
+  view_app->add_option("--screenshot", view.screenshot,
+                       "Write the window to this .png when all is drawn, and close it");
+  addDeviceOptions(*view_app, view.device);
+
   ReferenceCommand reference;
   CLI::App* reference_app =
-      app.add_subcommand("reference", "Path-trace a plant: the truth for render (CPU)");
-  addSceneOptions(*reference_app, reference)->required();
+      app.add_subcommand("reference", "Path-trace a plant or scene: the truth for render (CPU)");
+  addSceneOptions(*reference_app, reference);
+  reference_app->get_option("file")->required();
   reference_app
       ->add_option("-o,--output", reference.output, "File to write: .png, or .exr in kcd/m^2")
       ->required();
-  addWindOptions(*reference_app, reference.wind);
-  addDaylightOptions(*reference_app, reference.daylight);
-  addExposureOptions(*reference_app, reference.exposure);
+  addWindOptions(*reference_app, reference.scene.wind);
+  addDaylightOptions(*reference_app, reference.scene.daylight);
+  addExposureOptions(*reference_app, reference.scene.exposure);
   reference_app->add_option("--samples", reference.samples, "Paths a pixel at most")
       ->capture_default_str();
   reference_app->add_option("--seconds", reference.seconds, "Stop after this time, 0 = never")
@@ -469,6 +454,7 @@ int run(int argc, char** argv) {
   if (*bake_app) runBake(bake);
   if (*export_app) runExport(wind_files);
   if (*render_app) runRender(render);
+  if (*view_app) runView(view);
   if (*reference_app) runReference(reference);
   if (*compare_app) return runCompare(compare);
   if (*sky_app) runSky(sky);

@@ -300,7 +300,7 @@ void runMotionReport(const MotionReportCommand& command) {
   Progress progress("report motion");
   View view;
   std::tie(view.width, view.height) = parseSize(command.size);
-  view.daylight = parseDaylight({});
+  view.daylight = daylightOf({});
   view.terms = presetTerms("habel");
   view.terms.ambient_source = AmbientSource::kSky;
   Renderer renderer(command.device);

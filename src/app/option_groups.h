@@ -5,7 +5,6 @@
 
 namespace CLI {
 class App;
-class Option;
 }  // namespace CLI
 
 /// Options that several commands have.
@@ -14,13 +13,14 @@ namespace verdure::app {
 void addLoadOptions(CLI::App& command, LoadOptions& load);
 /// `group`: the heading in the help.
 void addBakeOptions(CLI::App& command, BakeParameters& bake, const char* group);
-/// The plant, the picture's size and the camera; returns the plant's.
-CLI::Option* addSceneOptions(CLI::App& command, SceneOptions& scene);
-void addGroundOptions(CLI::App& command, GroundOptions& ground);
-void addWindOptions(CLI::App& command, WindOptions& wind);
+/// The plant or scene, the picture's size and the camera.
+void addSceneOptions(CLI::App& command, SceneCommand& scene);
+void addGroundOptions(CLI::App& command, GroundSettings& ground);
+void addWindOptions(CLI::App& command, WindSettings& wind);
 void addDeviceOptions(CLI::App& command, DeviceOptions& device);
-void addDaylightOptions(CLI::App& command, DaylightOptions& daylight);
-void addExposureOptions(CLI::App& command, ExposureOptions& exposure);
+void addDaylightOptions(CLI::App& command, DaylightSettings& daylight);
+void addExposureOptions(CLI::App& command, ExposureSettings& exposure);
+void addLookOptions(CLI::App& command, LookSettings& look);
 
 }  // namespace verdure::app
 

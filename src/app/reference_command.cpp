@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/loaded_scene.h"
 #include "base/progress.h"
 #include "scene/display.h"
 #include "shared/tone.h"
@@ -16,10 +17,10 @@ namespace verdure::app {
 
 void runReference(const ReferenceCommand& command) {
   ReferenceOptions options;
-  std::tie(options.width, options.height) = command.sizeInPixels();
-  command.checkCamera();
-  const Daylight light = parseDaylight(command.daylight);
-  const Exposure exposure = parseExposure(command.exposure);
+  const SceneSettings settings = command.settings();
+  const View view = viewOf(settings);  // what is wrong is said before long work
+  options.width = settings.width;
+  options.height = settings.height;
   if (command.samples < 1) throw Error("--samples", "must be at least 1", "64 is a fair start");
   if (command.bounces < 1)
     throw Error("--bounces", "must be at least 1", "1 is direct light alone");
@@ -31,21 +32,20 @@ void runReference(const ReferenceCommand& command) {
   options.noise = command.noise;
   options.seed = command.seed;
   checkOutput(command.output, {".exr", ".png"});
-  const Wind wind = command.wind.wind(false);
 
   Progress progress("reference");
-  progress.show("loading");
-  Plant plant = loadPlant(command.input, command.load);
-  restoreLeafNormals(plant);
-  const Scene scene = command.sceneOf(plant, nullptr);
-  options.camera = command.cameraFor(
-      scene, static_cast<float>(options.width) / static_cast<float>(options.height));
-  // Looked at as the plant at rest is, as render does.
-  if (wind.speed > 0.0f)
-    movePlant(motionFor(plant), wind, command.wind.time.value_or(0.0), {}, plant);
+  LoadSceneOptions load;
+  load.for_reference = true;
+  load.missing_is_error = !isSceneFile(command.input);
+  load.progress = [&progress](const std::string& step, double share) {
+    progress.show(step, share);
+  };
+  const LoadedScene loaded(settings, load);
+  options.camera = loaded.view().camera;
   progress.show("tracing", 0.0);
   options.progress = [&progress](double share) { progress.show("tracing", share); };
-  const ReferencePicture picture = renderReference(scene, light, options);
+  const ReferencePicture picture = renderReference(loaded.scene(), view.daylight, options);
+  const Exposure& exposure = view.exposure;
   const float average =
       exposure.ev ? shared::meteredLuminance(*exposure.ev) : averageLuminance(picture.image);
   const float white = exposure.white.value_or(automaticWhite(picture.image, average, exposure.key));

@@ -156,8 +156,8 @@ Daylight daylightOf(const DaylightSettings& daylight);
 Exposure exposureOf(const ExposureSettings& exposure);
 /// `film`: frames are asked for.
 Wind windOf(const WindSettings& wind, bool film = false);
-/// All of a view but its camera, where that is to be found from the scene.
-View viewOf(const SceneSettings& settings);
+/// All of a view but its camera.
+View viewOf(const SceneSettings& settings, bool film = false);
 /// The camera that shows `scene`.
 Camera cameraOf(const SceneSettings& settings, const Scene& scene);
 

@@ -10,6 +10,7 @@
 #include "app/json_text.h"
 #include "app/loaded_scene.h"
 #include "app/scene_settings.h"
+#include "base/progress.h"
 #include "base/random.h"
 #include "gltf_builder.h"
 #include "verdure/error.h"
@@ -65,7 +66,7 @@ SceneSettings unusualScene(const fs::path& folder) {
   grown.grow.leaf_age = 0.9f;
   s.plants = {file, grown};
   s.placements = {{1, {1.1f, 0.3f, -2.7f}, 2.0f, 0.7f, 0x12ab9f, 4000000001u}};
-  s.layouts = {{(folder / "layout.glb").string(), {1, 0}, true}};
+  s.layouts = {{(folder / "layout.glb").string(), {1, 0}, true, 9.5f}};
   ScatterSettings scatter;
   scatter.kinds = {{1, 2.5f, 0.4f, {0.3f, 1.7f}}};
   scatter.seed = 18000000000000000001ull;
@@ -152,6 +153,7 @@ void expectSame(const SceneSettings& a, const SceneSettings& b) {
     EXPECT_EQ(a.layouts[i].file, b.layouts[i].file);
     EXPECT_EQ(a.layouts[i].plants, b.layouts[i].plants);
     EXPECT_EQ(a.layouts[i].heights_of_file, b.layouts[i].heights_of_file);
+    EXPECT_EQ(a.layouts[i].scale, b.layouts[i].scale);
   }
   ASSERT_EQ(a.scatters.size(), b.scatters.size());
   for (std::size_t i = 0; i < a.scatters.size(); ++i) {
@@ -595,6 +597,33 @@ TEST(LoadedScene, AMarkerStandsForAMissingPlant) {
   EXPECT_THROW(LoadedScene(settings, strict), Error);
 }
 
+TEST(LoadedScene, AHundredThousandPlacesTakeLittleTime) {
+  const fs::path folder = scratchFolder("loaded_many");
+  SceneSettings scene = boxScene(folder);
+  Random random(3);
+  for (int i = 0; i < 100'000; ++i) {
+    Placement place;
+    place.position = {random.vary(400.0f), 0.0f, random.vary(400.0f)};
+    place.angle = random.vary(3.0f);
+    place.tint = random.next() & 0xffffffu;
+    place.phase = random.next();
+    scene.placements.push_back(place);
+  }
+  Timer timer;
+  writeScene(scene, folder / "many.json");
+  const double written = timer.lap();
+  const SceneSettings read = readScene(folder / "many.json");
+  const double was_read = timer.lap();
+  const LoadedScene loaded(read);
+  const double was_loaded = timer.lap();
+  EXPECT_EQ(loaded.forest().places.size(), 100'000u);
+  const Camera camera = loaded.view().camera;
+  EXPECT_GT(glm::distance(camera.eye, camera.target), 400.0f);
+  std::printf("written in %.2f s, read in %.2f s, loaded in %.2f s, camera in %.2f s\n", written,
+              was_read, was_loaded, timer.lap());
+  EXPECT_LT(written + was_read + was_loaded, 60.0);  // sanitizers, busy machines
+}
+
 TEST(LoadedScene, ScattersAndLaysOutOnATerrain) {
   const fs::path folder = scratchFolder("loaded_places");
   SceneSettings settings = boxScene(folder);
@@ -611,7 +640,7 @@ TEST(LoadedScene, ScattersAndLaysOutOnATerrain) {
   layout.json["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
   writeFile(folder / "layout.glb", layout.glb());
   settings.layouts = {{(folder / "layout.glb").string(), {0}, true},
-                      {(folder / "layout.glb").string(), {0}, false}};
+                      {(folder / "layout.glb").string(), {0}, false, 1.5f}};
   ScatterSettings scatter;
   scatter.kinds = {{.plant = 0, .radius_m = 2.0f, .scale = {1.0f, 1.0f}}};
   scatter.size_m = {60.0f, 60.0f};
@@ -631,7 +660,7 @@ TEST(LoadedScene, ScattersAndLaysOutOnATerrain) {
   };
   EXPECT_EQ(places[1].position.y, 8.0f);  // the file's own height, and its foot below its origin
   for (const std::size_t i : {std::size_t{0}, std::size_t{3}, std::size_t{4}, places.size() - 1})
-    EXPECT_NEAR(places[i].position.y, ground(places[i]) + 1.0f, 1e-5f) << i;
+    EXPECT_NEAR(places[i].position.y, ground(places[i]) + places[i].scale, 1e-5f) << i;
   for (std::size_t i = 5; i < places.size(); ++i)
     for (const glm::vec3& taken :
          {glm::vec3(20, 0, 10), glm::vec3(-20, 0, -20), *settings.camera.eye})

@@ -120,6 +120,10 @@ struct SceneCommand {
   void save(const SceneSettings& settings) const;
 };
 
+class LoadedScene;
+/// Prints what was found out: missing plants on standard error, the rest unless it goes into JSON.
+void tellNotes(const LoadedScene& loaded, bool json);
+
 struct RenderCommand : SceneCommand {
   std::string output;
   DeviceOptions device;

@@ -142,6 +142,7 @@ void LoadedScene::lightPlants(const View& look) {
                 "trace them with verdure bake --transfer 5");
   }
   const View shown = withoutMissingTransfer(look);
+  const BakeParameters usual;
   for (std::size_t i = 0; i < plants_.size(); ++i) {
     LoadedPlant& plant = plants_[i];
     if (plant.missing) continue;
@@ -152,8 +153,9 @@ void LoadedScene::lightPlants(const View& look) {
           shown.terms.ambient_source == AmbientSource::kTransfer && !plant.transfer;
       if (!plant.light && (any_look || needsBake(shown) || lacks_transfer)) {
         show("baking");
-        plant.light = bakedLight(plant.plant, settings_.plants[i].bake.value_or(BakeParameters{}),
-                                 usualField(settings_.look), bake_seconds_);
+        const std::optional<BakeParameters>& bake = settings_.plants[i].bake;
+        plant.light = bakedLight(plant.plant, bake ? *bake : usual, usualField(settings_.look),
+                                 bake_seconds_);
       }
       if (shown.terms.ambient_source == AmbientSource::kLeafVisibility || any_look)
         addVisibility(plant);
@@ -247,6 +249,7 @@ std::vector<Placement> LoadedScene::allPlaces() {
     for (Placement& place : layout.places) {
       place.plant = settings.plants.at(place.plant % settings.plants.size());
       if (!settings.heights_of_file) place.position.y = height(place);
+      place.scale *= settings.scale;
       places.push_back(place);
     }
   }
@@ -383,6 +386,11 @@ void LoadedScene::bake(std::size_t index, const BakeParameters& parameters) {
     addVisibility(plant);
   settings_.plants[index].bake = parameters;
   linkForest();
+}
+
+std::size_t LoadedScene::missingPlants() const {
+  return static_cast<std::size_t>(std::count_if(
+      plants_.begin(), plants_.end(), [](const LoadedPlant& plant) { return plant.missing; }));
 }
 
 std::string LoadedScene::lightName() const {

@@ -56,7 +56,9 @@ class LoadedScene {
   const SceneSettings& settings() const { return settings_; }
   const std::vector<LoadedPlant>& plants() const { return plants_; }
   const Forest& forest() const { return forest_; }  ///< without places if there is none
-  const std::vector<std::string>& notes() const { return notes_; }  ///< one line each
+  /// One line each; first those of missing plants.
+  const std::vector<std::string>& notes() const { return notes_; }
+  std::size_t missingPlants() const;
   double bakeSeconds() const { return bake_seconds_; }
   /// "best (baked)": what the settings' light turned out to be.
   std::string lightName() const;

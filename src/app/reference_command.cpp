@@ -54,6 +54,7 @@ void runReference(const ReferenceCommand& command) {
   else
     writePng(displayed(picture.image, average, exposure.key, white), command.output);
   progress.show("done");
+  tellNotes(loaded, command.json);
   const double paths = static_cast<double>(options.width) * options.height * picture.samples;
   if (command.json)
     fmt::print("{}\n", nlohmann::ordered_json{{"width", options.width},
@@ -63,6 +64,7 @@ void runReference(const ReferenceCommand& command) {
                                               {"average_kcd_m2", average},
                                               {"white", white},
                                               {"seconds", picture.seconds},
+                                              {"notes", loaded.notes()},
                                               {"paths_per_second", paths / picture.seconds}}
                            .dump(2));
   else

@@ -25,20 +25,6 @@ void checkOutput(const std::string& path, const std::vector<std::string>& extens
   checkWritable(path);
 }
 
-SceneSettings SceneCommand::settings() const {
-  SceneSettings settings = scene;
-  for (PlantSettings& plant : settings.plants) {
-    if (!load.foliage.empty()) plant.load.foliage = load.foliage;
-    if (!load.wood.empty()) plant.load.wood = load.wood;
-    if (bake_again) plant.bake = bake;
-  }
-  return settings;
-}
-
-void SceneCommand::save(const SceneSettings& settings) const {
-  if (!save_scene.empty()) writeScene(settings, save_scene);
-}
-
 namespace {
 
 /// First and last frame.
@@ -98,13 +84,6 @@ Frame drawFilm(const RenderCommand& command, const std::pair<int, int>& frames, 
   return std::move(*first);
 }
 
-/// What the scene file or its plants lack is said even where nobody reads notes.
-void warnOfMissing(const LoadedScene& loaded) {
-  for (const std::string& note : loaded.notes())
-    if (note.find("a marker stands for it") != std::string::npos)
-      fmt::print(stderr, "verdure: {}\n", note);
-}
-
 }  // namespace
 
 void runRender(const RenderCommand& command) {
@@ -149,7 +128,7 @@ void runRender(const RenderCommand& command) {
   if (!frames && !view.hdr) writePng(frame.image, command.output);
   command.save(settings);
   progress.show("done");
-  warnOfMissing(loaded);
+  tellNotes(loaded, command.json);
   if (command.json) {
     fmt::print("{}\n",
                nlohmann::ordered_json{{"device", renderer.deviceName()},
@@ -170,7 +149,6 @@ void runRender(const RenderCommand& command) {
                    .dump(2));
     return;
   }
-  for (const std::string& note : loaded.notes()) fmt::print("note: {}\n", note);
   fmt::print("{}: {}x{}, {} light, on {}; shadow {:.1f} ms, colour {:.1f} ms, tone {:.1f} ms\n",
              command.output, view.width, view.height, loaded.lightName(), renderer.deviceName(),
              frame.times.shadow_ms, frame.times.color_ms, frame.times.tone_ms);

@@ -112,6 +112,7 @@ void fieldsOf(Archive& a, LayoutSettings& layout) {
   a.path("file", layout.file);
   a.plants("plants", layout.plants);
   a.choice("heights", layout.heights_of_file, {"ground", "file"});
+  a.number("scale", layout.scale, kTiny, 1e4);
   if constexpr (Archive::kReads) {
     if (layout.file.empty()) a.refuse("", "has no file", "name a .glb or .gltf with instances");
     if (layout.plants.empty()) a.refuse("plants", "names no plant", "name those that stand there");

@@ -35,6 +35,7 @@ struct LayoutSettings {
   std::string file;
   std::vector<std::uint32_t> plants;  ///< of its nodes that have instances, in turn
   bool heights_of_file = false;       ///< else on the ground
+  float scale = 1.0f;                 ///< times the instances' own, above 0
 };
 
 /// Places by chance: verdure/scatter.h.

@@ -23,11 +23,9 @@ Image makePaper(int size) {
     const float v = (static_cast<float>(y) + 0.5f) / static_cast<float>(size);
     for (int x = 0; x < size; ++x) {
       const float u = (static_cast<float>(x) + 0.5f) / static_cast<float>(size);
-      // The felt leaves dimples a few pixels wide, which lie denser here and there; fibres are
-      // finer.
-      const Cell dimple = cellNoise(u, v, 96, 96, 7);
-      const float felt =
-          0.55f * fractalNoise(u, v, 64, 64, 3, 11) + 0.45f * std::min(dimple.nearest * 1.3f, 1.0f);
+      // The felt leaves dimples a few pixels wide. A lattice askew hides the rows of the other.
+      const float felt = 0.5f * fractalNoise(u, v, 83, 83, 3, 11) +
+                         0.5f * fractalNoise(u + v, u - v + 1.0f, 59, 59, 3, 7);
       std::uint8_t* texel = paper.at(x, y);
       texel[0] = spread(felt, 2.2f);
       texel[1] = spread(fractalNoise(u, v, 5, 5, 5, 23), 1.7f);

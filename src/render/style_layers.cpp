@@ -21,7 +21,8 @@ gpu::Constants constantsOf(const Draw& draw, const View& view) {
                                     .flip_normal = draw.foliage && leaf_normals,
                                     .alpha_test = draw.alpha_test,
                                     .foliage = draw.foliage,
-                                    .moving = draw.moving});
+                                    .moving = draw.moving,
+                                    .forest = draw.forest.has_value()});
 }
 
 }  // namespace

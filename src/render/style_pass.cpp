@@ -225,9 +225,10 @@ void StylePass::record(const vk::raii::CommandBuffer& commands, vk::DescriptorSe
   // What each style reads.
   std::vector<const Blur*> blurs;
   if (view.style != Style::kNormals) blurs = {&soft_normals_};
+  if (view.style != Style::kNormals)
+    blurs.insert(blurs.end(), {&foliage_fine_, &foliage_broad_, &foliage_wide_});
   if (view.style == Style::kToon || view.style == Style::kWatercolor)
-    blurs.insert(blurs.end(), {&foliage_fine_, &foliage_broad_, &foliage_wide_, &foliage_color_,
-                               &soft_backdrop_});
+    blurs.insert(blurs.end(), {&foliage_color_, &soft_backdrop_});
   for (const Blur* blur : blurs) recordBlur(commands, *blur);
   push(style_pipeline_layout_);
   drawFullscreen(commands, target, styles_.at(view.style), *style_pipeline_layout_, *style_set_);

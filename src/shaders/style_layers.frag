@@ -20,6 +20,7 @@ layout(location = 1) centroid in vec4 in_normal;
 layout(location = 2) in vec2 uv;
 layout(location = 3) centroid in vec2 covered_uv;
 layout(location = 6) flat in uint seed;
+layout(location = 9) flat in uvec2 seat;  // instance.glsl
 layout(location = 0) out vec4 out_normal;  // unit normal times the ambient coefficient
 layout(location = 1) out vec4 out_color;   // reflectance
 layout(location = 2) out vec4 out_layer;   // 1, lightness, 1 / distance along the view, noise
@@ -40,6 +41,7 @@ void main() {
   vec4 texel = textureGrad(base_color, covered_uv, dFdx(uv), dFdy(uv));
   int mask = maskBeforeGround();
   if (kAlphaTest) mask &= coverageMask(texel.a, draw.surface.x, seed);
+  if (kForest) mask &= fadeMask(seat);
   gl_SampleMask[0] = mask;
   if (mask == 0) discard;
 
@@ -60,7 +62,8 @@ void main() {
   float distance = dot(position - frame.eye.xyz, normalize(frame.ray_forward.xyz));
   float height_m = 2.0 * distance * length(frame.ray_down.xyz) / length(frame.ray_forward.xyz);
   out_normal = vec4(n * k, 1.0);
-  out_color = vec4(texel.rgb * draw.color.rgb, 1.0);
+  vec3 tint = kForest && kFoliage ? tintOf(seat) : vec3(1.0);
+  out_color = vec4(texel.rgb * draw.color.rgb * tint, 1.0);
   out_layer = vec4(1.0, lightness(light, sun + sky), 1.0 / max(distance, 1e-6),
                    placeNoise(position, max(kPatch * height_m, 1e-6)));
 }

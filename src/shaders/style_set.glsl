@@ -40,38 +40,88 @@ vec2 placeInPicture() {
   return gl_FragCoord.xy / style.picture.xy;
 }
 
-/// How much the normals that are seen change, in lengths of a unit normal per `unit` pixels.
-float normalChange(float unit) {
-  vec2 at = placeInPicture(), step = unit / style.picture.xy;
-  vec3 x = vec3(0.0), y = vec3(0.0);
-  for (int i = -1; i <= 1; ++i) {
-    float weight = i == 0 ? 2.0 : 1.0;
-    vec2 along = float(i) * step;
-    x += weight * (textureLod(seen_normals, at + vec2(step.x, along.y), 0.0).xyz -
-                   textureLod(seen_normals, at + vec2(-step.x, along.y), 0.0).xyz);
-    y += weight * (textureLod(seen_normals, at + vec2(along.x, step.y), 0.0).xyz -
-                   textureLod(seen_normals, at + vec2(along.x, -step.y), 0.0).xyz);
-  }
-  return sqrt(dot(x, x) + dot(y, y)) / 8.0;
+/// A layer's border, in pixels: inside is positive.
+float borderOf(sampler2D layer, vec2 at, float threshold, float least_slope) {
+  vec2 step = 1.0 / style.picture.xy;
+  float x = textureLod(layer, at + vec2(step.x, 0.0), 0.0).x -
+            textureLod(layer, at - vec2(step.x, 0.0), 0.0).x;
+  float y = textureLod(layer, at + vec2(0.0, step.y), 0.0).x -
+            textureLod(layer, at - vec2(0.0, step.y), 0.0).x;
+  return borderDistance(textureLod(layer, at, 0.0).x, threshold,
+                        max(0.5 * length(vec2(x, y)), least_slope));
 }
 
-/// Profiles and creases of the depths that are seen. Leaves lie at all depths of a crown, so that
-/// only larger steps count among them.
+/// Change per pixel of a layer's lightness.
+float toneSlope(sampler2D layer, vec2 at) {
+  vec2 step = 1.0 / style.picture.xy;
+  float x = layerAt(layer, at + vec2(step.x, 0.0)).tone - layerAt(layer, at - vec2(step.x, 0.0)).tone;
+  float y = layerAt(layer, at + vec2(0.0, step.y)).tone - layerAt(layer, at - vec2(0.0, step.y)).tone;
+  return 0.5 * length(vec2(x, y));
+}
+
+/// Where foliage ends: a share of the coverage around it, so that thin crowns keep their shape.
+float foliageThreshold(Layer wide) {
+  return clamp(0.55 * wide.cover, 0.05, 0.42);
+}
+
+/// Lightness of foliage, darker where nearer foliage surrounds it: so clumps stand out from those
+/// behind (Luft, Colditz and Deussen, "Image Enhancement by Unsharp Masking the Depth Buffer", 2006).
+float foliageTone(Layer leaves, Layer broad, Layer wide) {
+  float nearer = (broad.depth - wide.depth) / max(wide.depth, 1e-9);
+  return leaves.tone + clamp(2.2 * nearer, -0.12, 0.10);
+}
+
+/// A line along a border, `width` pixels wide.
+float lineAlong(float distance, float width) {
+  return insideBorder(0.5 * width - abs(distance), 1.0);
+}
+
+/// How much the normals of what covers change over `unit` pixels; what is not there has none.
+float normalChange(vec2 at, float unit) {
+  vec2 step = unit / style.picture.xy;
+  vec3 x = vec3(0.0), y = vec3(0.0);
+  float least = 1.0;
+  for (int i = 0; i < 9; ++i) {
+    if (i == 4) continue;
+    vec2 to = vec2(float(i % 3 - 1), float(i / 3 - 1));
+    vec4 seen = textureLod(seen_normals, at + step * to, 0.0);
+    vec3 n = seen.xyz / max(seen.w, 1e-3);
+    vec2 weights = to * (2.0 - abs(to.yx));
+    x += weights.x * n;
+    y += weights.y * n;
+    least = min(least, seen.w);
+  }
+  return sqrt(dot(x, x) + dot(y, y)) / 8.0 * smoothstep(0.25, 0.7, least);
+}
+
+/// Lines where normals change most: along the ridges of their change, so that what turns evenly, as
+/// a trunk does, has none.
+float normalInk(float unit) {
+  vec2 at = placeInPicture(), step = 1.6 * unit / style.picture.xy;
+  float change = normalChange(at, unit);
+  float beside = 0.25 * (normalChange(at + vec2(step.x, 0.0), unit) +
+                         normalChange(at - vec2(step.x, 0.0), unit) +
+                         normalChange(at + vec2(0.0, step.y), unit) +
+                         normalChange(at - vec2(0.0, step.y), unit));
+  return smoothstep(0.06, 0.17, change) * smoothstep(0.005, 0.05, change - beside);
+}
+
+/// Profiles of the depths that are seen. Leaves lie at all depths of a crown: among them normals
+/// alone make lines. Twigs are a line themselves. Far off lines fade, and with them the horizon.
 float depthInk(float unit) {
   vec2 at = placeInPicture(), step = unit / style.picture.xy;
   float v[9];
-  vec4 here = textureLod(seen_depths, at, 0.0);
-  float nearest = 0.0, foliage = 0.0;
+  float nearest = 8.0 / style.picture.w, foliage = 0.0, wood = 0.0;
   for (int i = 0; i < 9; ++i) {
     vec4 near = textureLod(seen_depths, at + step * vec2(float(i % 3 - 1), float(i / 3 - 1)), 0.0);
     v[i] = near.w;
     nearest = max(nearest, near.w);
     foliage = max(foliage, near.x);
+    wood = max(wood, near.y);
   }
-  float first = firstDifference(v), second = secondDifference(v);
-  float profile = profileStrength(first, second, nearest);
-  float lines = smoothstep(mix(0.02, 0.12, foliage), mix(0.06, 0.4, foliage), profile);
-  return lines;
+  float profile = profileStrength(firstDifference(v), secondDifference(v), nearest);
+  float thin = wood > 0.02 ? smoothstep(0.6, 1.0, wood) : 1.0;
+  return thin * smoothstep(0.02, 0.07, profile) * (1.0 - smoothstep(0.02, 0.25, foliage));
 }
 
 /// To the display.

@@ -48,7 +48,11 @@ struct Impostor {
   int views = 0, texels = 0;
   glm::vec3 center{0.0f};  ///< of the sphere, in the plant's coordinates
   float radius = 0.0f;     ///< m
-  Image color;             ///< base colour, sRGB; alpha: covered share
+  /// An ellipsoid around the foliage, in the plant's coordinates, and how much of a straight line's
+  /// light its leaves take away: of a way of s, in radii, exp(-extinction s) is left.
+  glm::vec3 crown_center{0.0f}, crown_radii{1.0f};
+  float extinction = 0.0f;
+  Image color;  ///< base colour, sRGB; alpha: covered share
   /// 128 + 127 times the normal of leaves and wood on the seen side: short where they differ.
   /// Alpha: depth, 255 at the sphere's front to 0 at its back.
   Image normal;
@@ -75,7 +79,7 @@ struct PlantLevels {
 };
 
 struct LevelOptions {
-  std::vector<float> leaf_shares{0.25f, 0.0625f};  ///< falling, each in (0, 1)
+  std::vector<float> leaf_shares{0.25f, 0.0625f, 0.015625f};  ///< falling, each in (0, 1)
   ImpostorOptions impostor;
 };
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 
 #include "base/progress.h"
+#include "motion/motion_tables.h"
 #include "plant/normals.h"
 #include "verdure/leaf_visibility.h"
 
@@ -44,9 +46,33 @@ void restoreLeafNormals(Plant& plant) {
       mesh.normals = angleWeightedNormals(mesh.positions, mesh.indices);
 }
 
-PlantMotion motionFor(Plant& plant) {
+PlantMotion motionFor(Plant& plant, const MotionSettings& settings) {
   if (plant.branches.empty()) findBranches(plant);
-  return plantMotion(plant);
+  return motionOf(plant, settings);
+}
+
+PlantMotion motionOf(const Plant& plant, const MotionSettings& settings) {
+  MotionOptions options;
+  options.flexibility = settings.flexibility;
+  for (std::size_t level = 0; level < options.damping_ratio.size(); ++level)
+    options.damping_ratio[level] = settings.damping_ratio[static_cast<glm::length_t>(level)];
+  PlantMotion motion = plantMotion(plant, options);
+  std::vector<float> factors;
+  for (const MotionBranch& branch : motion.tree.branches)
+    factors.push_back(settings.level_flexibility[branch.level]);
+  for (const MotionSettings::BranchFlexibility& one : settings.branches)
+    if (one.branch < factors.size()) factors[one.branch] *= one.flexibility;
+  if (std::all_of(factors.begin(), factors.end(), [](float factor) { return factor == 1.0f; }))
+    return motion;
+  auto tables = std::make_shared<MotionTables>(*motion.tables);
+  for (std::size_t b = 0; b < factors.size(); ++b) {
+    motion.branches[b].mean *= factors[b];
+    motion.branches[b].swing *= factors[b];
+    tables->drives[b].mean *= factors[b];
+    tables->drives[b].swing *= factors[b];
+  }
+  motion.tables = std::move(tables);
+  return motion;
 }
 
 float groundHeight(const Plant& plant) {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 
+#include "app/scene_settings.h"
 #include "verdure/motion.h"
 #include "verdure/plant.h"
 
@@ -22,7 +23,9 @@ void restoreLeafNormals(Plant& plant);
 
 /// A plant's motion, with its branches found first where they are not known. A plant without any
 /// sways as a whole: a note says so.
-PlantMotion motionFor(Plant& plant);
+PlantMotion motionFor(Plant& plant, const MotionSettings& settings = {});
+/// The same of a plant whose branches are known.
+PlantMotion motionOf(const Plant& plant, const MotionSettings& settings);
 
 /// Where a plant stands: on the zero of its own heights, where strands may hang below it; one that
 /// was modelled around or away from it stands on its lowest point.

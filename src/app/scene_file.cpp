@@ -77,6 +77,17 @@ void fieldsOf(Archive& a, BakeParameters& bake) {
 }
 
 template <class Archive>
+void fieldsOf(Archive& a, MotionSettings& motion) {
+  a.number("flexibility", motion.flexibility, kTiny, 100.0);
+  a.vector("level_flexibility", motion.level_flexibility, 0.0, 100.0);
+  a.vector("damping_ratio", motion.damping_ratio, 0.02, 4.0);
+  a.list("branches", motion.branches, [&](MotionSettings::BranchFlexibility& one) {
+    a.number("branch", one.branch, 0.0, 1e9);
+    a.number("flexibility", one.flexibility, 0.0, 100.0);
+  });
+}
+
+template <class Archive>
 void fieldsOf(Archive& a, PlantSettings& plant) {
   a.text("name", plant.name);
   if (Archive::kReads || !plant.file.empty()) {
@@ -87,6 +98,7 @@ void fieldsOf(Archive& a, PlantSettings& plant) {
   if (Archive::kReads ? a.has("grow") : plant.file.empty())
     a.object("grow", [&] { fieldsOf(a, plant.grow); });
   a.optionalObject("bake", plant.bake, [&](BakeParameters& bake) { fieldsOf(a, bake); });
+  a.optionalObject("motion", plant.motion, [&](MotionSettings& motion) { fieldsOf(a, motion); });
   if constexpr (Archive::kReads) {
     if (plant.file.empty() && !a.has("grow"))
       a.refuse("", "has neither a file nor grow", "name a file, or the species that grows");

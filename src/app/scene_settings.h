@@ -20,6 +20,19 @@
 /// to the file.
 namespace verdure::app {
 
+/// How a plant answers wind, by its branches' levels and branch by branch (Figure 4.17 of Habel
+/// 2009).
+struct MotionSettings {
+  struct BranchFlexibility {
+    std::uint32_t branch = 0;   ///< index into MotionTree::branches; those that are not there: none
+    float flexibility = 1.0f;   ///< times its deflections, at least 0
+  };
+  float flexibility = 1.0f;           ///< times all deflections, above 0
+  glm::vec4 level_flexibility{1.0f};  ///< times those of a level's branches, trunk first, at least 0
+  glm::vec4 damping_ratio{0.3f, 0.2f, 0.2f, 0.2f};  ///< of a level's, [0.02, 4]
+  std::vector<BranchFlexibility> branches;
+};
+
 /// A kind of plant of the scene: a file, or grown.
 struct PlantSettings {
   std::string name;  ///< what places call it, unique in its scene
@@ -28,6 +41,7 @@ struct PlantSettings {
   LoadOptions load;  ///< of a file
   /// Unset: the file's own bake; if it has none, or the plant is grown, the defaults.
   std::optional<BakeParameters> bake;
+  std::optional<MotionSettings> motion = {};  ///< unset: the defaults
 };
 
 /// Places from a glTF file's instances (EXT_mesh_gpu_instancing).

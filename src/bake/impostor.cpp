@@ -4,8 +4,10 @@
 
 #include "bake/coverage.h"
 #include "base/parallel.h"
+#include "base/random.h"
 #include "rays/ray_scene.h"
 #include "shared/color.h"
+#include "shared/forest.h"
 #include "shared/leaf.h"
 #include "shared/octahedron.h"
 #include "verdure/error.h"
@@ -38,6 +40,7 @@ class ImpostorBake {
   }
 
   Impostor bake() {
+    measureCrown();
     const int side = options_.views * options_.texels;
     parallelFor(static_cast<std::size_t>(side), 4, [&](std::size_t row) {
       const RayThread thread;
@@ -47,6 +50,52 @@ class ImpostorBake {
   }
 
  private:
+  /// Fits the extinction to rays from what is seen of the foliage towards the upper hemisphere.
+  void measureCrown() {
+    constexpr int kRays = 4096;
+    const Bounds box = bounds(plant_, PartKind::kFoliage);
+    out_.crown_center = box.center();
+    out_.crown_radii = glm::max(0.5f * box.size(), glm::vec3(1e-3f * out_.radius));
+    std::vector<float> ways(kRays, -1.0f);
+    std::vector<std::uint8_t> open(kRays, 0);
+    parallelFor(kRays, 64, [&](std::size_t i) {
+      const RayThread thread;
+      Random random(i, 11);
+      const auto upper = [&random] {
+        const float y = random.uniform(), turn = random.uniform(0.0f, 6.2831853f);
+        const float across = std::sqrt(1.0f - y * y);
+        return glm::vec3(across * std::cos(turn), y, across * std::sin(turn));
+      };
+      const glm::vec3 toward = upper(), right = shared::viewRight(toward);
+      const glm::vec2 at(random.uniform(-1.0f, 1.0f), random.uniform(-1.0f, 1.0f));
+      Ray ray;
+      ray.origin =
+          out_.center + out_.radius * (at.x * right + at.y * glm::cross(toward, right) + toward);
+      ray.direction = -toward;
+      const std::optional<Hit> hit = scene_.closestHit(ray);
+      if (!hit || !hit->foliage) return;
+      const glm::vec3 light = upper();
+      Ray back;
+      back.direction = light;
+      const float side = glm::dot(light, hit->normal) > 0.0f ? 1.0f : -1.0f;
+      back.origin = scene_.originOff(hit->position, side * hit->normal);
+      ways[i] = shared::wayThroughCrown((hit->position - out_.crown_center) / out_.crown_radii,
+                                        light / out_.crown_radii);
+      open[i] = scene_.occluded(back) ? 0 : 1;
+    });
+    double seen = 0.0;
+    for (std::size_t i = 0; i < kRays; ++i) seen += ways[i] >= 0.0f ? double{open[i]} : 0.0;
+    float low = 0.0f, high = 20.0f;
+    for (int step = 0; step < 40; ++step) {
+      const float middle = 0.5f * (low + high);
+      double left = 0.0;
+      for (const float way : ways)
+        if (way >= 0.0f) left += std::exp(-double{middle} * double{way});
+      (left > seen ? low : high) = middle;
+    }
+    out_.extinction = low;
+  }
+
   void bakeTexel(int x, int y) {
     const int n = options_.texels, samples = options_.samples;
     const auto steps = static_cast<float>(options_.views - 1);

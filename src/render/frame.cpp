@@ -279,6 +279,12 @@ void FrameDrawer::recordColor(const vk::raii::CommandBuffer& commands, const Gpu
                     gpu::Use::kColorAttachment);
   gpu::imageBarrier(commands, *targets_->depth.image, kDepthAspect, gpu::Use::kUndefined,
                     gpu::Use::kDepthAttachment);
+  if (inspection_ != Inspection::kNothing) {
+    beginColor(commands, view, true, true);
+    inspect_pass_.record(commands, layout_, *frame_set_, scene, view.terms, inspection_);
+    commands.endRendering();
+    return;
+  }
   const bool terrain = scene.terrain() != nullptr;
   const bool billboards = terrain && billboard_trial_;
   beginColor(commands, view, true, !terrain || billboards);
@@ -380,13 +386,15 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view, const gpu::Texture* t
   if (depth_maps) light_depth_pass_.prepare(*device_, layout_, scene, view.terms);
   const bool photo = view.style == Style::kPhoto;
   if (photo) plant_pass_.prepare(*device_, layout_, scene, view.terms, kind);
+  if (inspection_ != Inspection::kNothing)
+    inspect_pass_.prepare(*device_, layout_, scene, view.terms, inspection_);
   if (scene.forest() != nullptr) {
     scene.forest()->look(view, cascades);
     impostor_pass_.prepare(view.terms, kind, depth_maps);
   }
   if (!photo && !style_pass_)
     style_pass_.emplace(*device_, layout_, *motion_pass_.layouts().vertex.layout);
-  if (!photo) style_pass_->prepare(scene, view, targets_->depth, uniforms.ground.z);
+  if (!photo) style_pass_->prepare(scene, view, targets_->depth, impostor_pass_, uniforms.ground.z);
   backdrop_pass_.prepare(*device_, layout_, view.terms, kind, scene.ground());
   if (scene.terrain() != nullptr)
     grass_pass_.prepare(*scene.terrain(), view, targets_->depth, new_targets, kind,
@@ -426,7 +434,8 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view, const gpu::Texture* t
     timers_.stamp(commands, 3);
     recordTone(commands, view, units);
     if (!photo)
-      style_pass_->record(commands, *frame_set_, scene, view, targets_->depth, targets_->picture);
+      style_pass_->record(commands, *frame_set_, scene, view, impostor_pass_, targets_->depth,
+                          targets_->picture);
     timers_.stamp(commands, 4);
     if (view.last) velocity_pass_.record(commands, layout_, *frame_set_, scene, grass_pass_);
     if (target != nullptr)

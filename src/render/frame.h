@@ -16,6 +16,7 @@
 #include "render/grass_pass.h"
 #include "render/ground_light.h"
 #include "render/impostor_pass.h"
+#include "render/inspect_pass.h"
 #include "render/light_depth_pass.h"
 #include "render/motion_pass.h"
 #include "render/plant_pass.h"
@@ -58,6 +59,8 @@ class FrameDrawer {
   /// In tests and measurements alone: the first layer of grass as polygons instead of rays.
   void tryBillboards(const std::optional<BillboardTrial>& trial) { billboard_trial_ = trial; }
   const GrassBillboards& billboards() const { return grass_billboards_; }
+  /// From now on: plants alone, one quantity of them; views should be inspectedView().
+  void inspect(Inspection what) { inspection_ = what; }
 
  private:
   void checkView(const View& view) const;
@@ -85,6 +88,7 @@ class FrameDrawer {
   LightDepthPass light_depth_pass_;
   BlockerPass blocker_pass_;
   PlantPass plant_pass_;
+  InspectPass inspect_pass_;
   VelocityPass velocity_pass_;
   BackdropPass backdrop_pass_;
   GrassPass grass_pass_;
@@ -109,6 +113,7 @@ class FrameDrawer {
   std::optional<gpu::Texture> shadow_maps_, foliage_maps_;  ///< a layer for each cascade
   CascadeTrial cascade_trial_;
   std::optional<BillboardTrial> billboard_trial_;
+  Inspection inspection_ = Inspection::kNothing;
   std::optional<Targets> targets_;
   std::shared_ptr<const Sky> known_sky_;
   Harmonics known_harmonics_;  ///< of it

@@ -152,6 +152,8 @@ GpuForest::GpuForest(const gpu::Device& device, gpu::Upload& upload, PackedFores
     shared::ImpostorKind& data = impostor_data_[kinds_.size()];
     data.sphere = kind.impostor.sphere;
     data.leaf = kind.leaf;
+    data.crown = kind.impostor.crown;
+    data.radii = kind.impostor.radii;
     data.meshes = static_cast<std::uint32_t>(kind.grain_m.size());
     data.views = static_cast<std::uint32_t>(kind.impostor.views);
     Kind& made = kinds_.emplace_back();

@@ -9,6 +9,9 @@ constexpr std::uint32_t kVertex[] = {
 constexpr std::uint32_t kFragment[] = {
 #include "shaders/impostor.frag.inc"
 };
+constexpr std::uint32_t kDrawn[] = {
+#include "shaders/style_impostor.frag.inc"
+};
 constexpr std::uint32_t kShadow[] = {
 #include "shaders/impostor_shadow.frag.inc"
 };
@@ -31,6 +34,8 @@ gpu::Constants constantsOf(const Terms& terms, DrawKind kind) {
 ImpostorPass::ImpostorPass(const gpu::Device& device, vk::DescriptorSetLayout frame_set,
                            const ForestLayouts& layouts)
     : device_(&device),
+      frame_layout_(frame_set),
+      impostor_layout_(*layouts.impostor.layout),
       layout_(gpu::makePipelineLayout(
           device, std::array{frame_set, *layouts.impostor.layout},
           vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment,
@@ -66,8 +71,9 @@ void ImpostorPass::prepare(const Terms& terms, const DrawKind& kind, bool light_
   shadows_.emplace(light_depth, gpu::makeGraphicsPipeline(*device_, request));
 }
 
-void ImpostorPass::draw(const vk::raii::CommandBuffer& commands, vk::DescriptorSet frame_set,
-                        const GpuForest& forest, std::uint32_t view) const {
+void ImpostorPass::draw(const vk::raii::CommandBuffer& commands, vk::PipelineLayout layout,
+                        vk::DescriptorSet frame_set, const GpuForest& forest,
+                        std::uint32_t view) const {
   for (std::uint32_t k = 0; k < forest.kinds_.size(); ++k) {
     if (!forest.kinds_[k].set) continue;
     const shared::ForestView& data = forest.view_data_[view];
@@ -78,10 +84,10 @@ void ImpostorPass::draw(const vk::raii::CommandBuffer& commands, vk::DescriptorS
         .first_far = data.first_far,
         .cascade = view == GpuForest::kPicture ? shared::kForestNone : view - 1,
         .most = data.eye.w};
-    commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout_, 0,
+    commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, layout, 0,
                                 {frame_set, **forest.kinds_[k].set}, nullptr);
     commands.pushConstants<shared::ImpostorJob>(
-        *layout_, vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment, 0, job);
+        layout, vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment, 0, job);
     forest.drawFar(commands, k, view);
   }
 }
@@ -89,14 +95,44 @@ void ImpostorPass::draw(const vk::raii::CommandBuffer& commands, vk::DescriptorS
 void ImpostorPass::record(const vk::raii::CommandBuffer& commands, vk::DescriptorSet frame_set,
                           const GpuForest& forest, const Terms& terms, const DrawKind& kind) const {
   commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pictures_.at(constantsOf(terms, kind)));
-  draw(commands, frame_set, forest, GpuForest::kPicture);
+  draw(commands, *layout_, frame_set, forest, GpuForest::kPicture);
+}
+
+void ImpostorPass::prepareDrawn(const Terms& terms, const DrawKind& kind,
+                                vk::DescriptorSetLayout ground_set, vk::Format color) {
+  if (!*drawn_layout_)
+    drawn_layout_ = gpu::makePipelineLayout(
+        *device_, std::array{frame_layout_, impostor_layout_, ground_set},
+        vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment,
+        sizeof(shared::ImpostorJob));
+  gpu::Constants constants = constantsOf(terms, kind);
+  if (drawn_.contains(constants)) return;
+  vk::raii::Pipeline pipeline =
+      gpu::makeGraphicsPipeline(*device_, {.vertex = kVertex,
+                                           .fragment = kDrawn,
+                                           .constants = constants,
+                                           .layout = *drawn_layout_,
+                                           .color = color,
+                                           .more_colors = {color, color},
+                                           .depth = FrameLayout::kDepth,
+                                           .samples = FrameLayout::kSamples});
+  drawn_.emplace(std::move(constants), std::move(pipeline));
+}
+
+void ImpostorPass::recordDrawn(const vk::raii::CommandBuffer& commands, vk::DescriptorSet frame_set,
+                               vk::DescriptorSet ground_set, const GpuForest& forest,
+                               const Terms& terms, const DrawKind& kind) const {
+  commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *drawn_.at(constantsOf(terms, kind)));
+  commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *drawn_layout_, 2, {ground_set},
+                              nullptr);
+  draw(commands, *drawn_layout_, frame_set, forest, GpuForest::kPicture);
 }
 
 void ImpostorPass::recordShadows(const vk::raii::CommandBuffer& commands,
                                  vk::DescriptorSet frame_set, const GpuForest& forest,
                                  std::uint32_t cascade, bool light_depth) const {
   commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *shadows_.at(light_depth));
-  draw(commands, frame_set, forest, cascade + 1);
+  draw(commands, *layout_, frame_set, forest, cascade + 1);
 }
 
 }  // namespace verdure

@@ -97,6 +97,8 @@ PackedImpostor packImpostor(const Impostor& impostor, const std::string& name) {
   packed.views = impostor.views;
   packed.texels = texels;
   packed.sphere = glm::vec4(impostor.center, impostor.radius);
+  packed.crown = glm::vec4(impostor.crown_center, impostor.extinction);
+  packed.radii = glm::vec4(impostor.crown_radii, 0.0f);
   const auto count = static_cast<std::size_t>(impostor.views * impostor.views);
   for (auto* layers : {&packed.color, &packed.normal, &packed.light}) layers->resize(count);
   parallelFor(count, 1, [&](std::size_t view) {

@@ -21,6 +21,7 @@ inline constexpr std::uint32_t kMostForestMeshes = 2048, kMostForestCasters = 32
 struct PackedImpostor {
   int views = 0, texels = 0;
   glm::vec4 sphere{0.0f};
+  glm::vec4 crown{0.0f}, radii{1.0f};  ///< as shared::ImpostorKind
   std::vector<std::vector<gpu::MipLevel>> color, normal, light;
 };
 

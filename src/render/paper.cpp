@@ -28,7 +28,7 @@ Image makePaper(int size) {
                          0.5f * fractalNoise(u + v, u - v + 1.0f, 59, 59, 3, 7);
       std::uint8_t* texel = paper.at(x, y);
       texel[0] = spread(felt, 2.2f);
-      texel[1] = spread(fractalNoise(u, v, 5, 5, 5, 23), 1.7f);
+      texel[1] = spread(fractalNoise(u, v, 5, 5, 5, 25), 1.7f);
       texel[2] = spread(fractalNoise(u, v, 7, 7, 4, 41), 1.7f);
       texel[3] = 255;
     }

@@ -12,12 +12,14 @@ constexpr std::uint32_t kFragment[] = {
 constexpr vk::ImageAspectFlags kColorAspect = vk::ImageAspectFlagBits::eColor;
 using Usage = vk::ImageUsageFlagBits;
 
+/// The ambient coefficient counts where normals are scaled by it.
+AmbientSource ambientOf(const View& view) {
+  return view.style_normals == StyleNormals::kScaled ? AmbientSource::kBaked : AmbientSource::kSky;
+}
+
 gpu::Constants constantsOf(const Draw& draw, const View& view) {
   const bool leaf_normals = view.style_normals == StyleNormals::kRaw || !draw.baked;
-  // The ambient coefficient counts where normals are scaled by it.
-  const AmbientSource source =
-      view.style_normals == StyleNormals::kScaled ? AmbientSource::kBaked : AmbientSource::kSky;
-  return termConstants(view.terms, {.ambient_source = source,
+  return termConstants(view.terms, {.ambient_source = ambientOf(view),
                                     .flip_normal = draw.foliage && leaf_normals,
                                     .alpha_test = draw.alpha_test,
                                     .foliage = draw.foliage,
@@ -42,7 +44,10 @@ StyleLayers::StyleLayers(const gpu::Device& device, const FrameLayout& layout,
       ground_set_(device, ground_layout_) {}
 
 void StyleLayers::prepare(const GpuScene& scene, const View& view, const gpu::Texture& ground_depth,
-                          bool new_targets) {
+                          bool new_targets, ImpostorPass& impostors) {
+  if (scene.forest() != nullptr)
+    impostors.prepareDrawn(view.terms, {.ambient_source = ambientOf(view)}, *ground_layout_.layout,
+                           kFormat);
   for (const Draw& draw : scene.draws()) {
     gpu::Constants constants = constantsOf(draw, view);
     if (!draw.seen || pipelines_.contains(constants)) continue;
@@ -87,7 +92,8 @@ void StyleLayers::prepare(const GpuScene& scene, const View& view, const gpu::Te
 }
 
 void StyleLayers::record(const vk::raii::CommandBuffer& commands, vk::DescriptorSet frame_set,
-                         const GpuScene& scene, const View& view) const {
+                         const GpuScene& scene, const View& view,
+                         const ImpostorPass& impostors) const {
   const NormalSource normals =
       view.style_normals == StyleNormals::kRaw ? NormalSource::kLeaf : NormalSource::kCrown;
   for (const bool foliage : {true, false}) {
@@ -139,6 +145,9 @@ void StyleLayers::record(const vk::raii::CommandBuffer& commands, vk::Descriptor
                                   nullptr);
       scene.record(commands, *layout_, frame_set, draw);
     }
+    if (foliage && scene.forest() != nullptr)
+      impostors.recordDrawn(commands, frame_set, *ground_set_, *scene.forest(), view.terms,
+                            {.ambient_source = ambientOf(view)});
     commands.endRendering();
     for (const gpu::Texture* result : results)
       gpu::imageBarrier(commands, *result->image, kColorAspect, gpu::Use::kColorAttachment,

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "render/frame_layout.h"
+#include "render/impostor_pass.h"
 #include "render/scene.h"
 
 namespace verdure {
@@ -28,10 +29,10 @@ class StyleLayers {
 
   /// `ground_depth`: of the samples of what may stand in front; `new_targets`: it is another one.
   void prepare(const GpuScene& scene, const View& view, const gpu::Texture& ground_depth,
-               bool new_targets);
+               bool new_targets, ImpostorPass& impostors);
   /// Outside of rendering; `ground_depth` must be kFragmentSampled. Leaves the layers so.
   void record(const vk::raii::CommandBuffer& commands, vk::DescriptorSet frame_set,
-              const GpuScene& scene, const View& view) const;
+              const GpuScene& scene, const View& view, const ImpostorPass& impostors) const;
 
   const Layer& foliage() const { return layers_[0]; }
   const Layer& wood() const { return layers_[1]; }

@@ -134,6 +134,13 @@ StylePass::Blur StylePass::makeBlur(const gpu::Texture& source, float sigma,
   return blur;
 }
 
+void StylePass::forgetTargets() {
+  backdrop_ = {};
+  for (Blur* blur : {&soft_normals_, &foliage_fine_, &foliage_broad_, &foliage_wide_,
+                     &foliage_color_, &soft_backdrop_})
+    *blur = {};  // sets go before others take their place: their pools must not go first
+}
+
 void StylePass::makeTargets(const gpu::Texture& ground_depth) {
   const std::uint32_t width = ground_depth.request.width, height = ground_depth.request.height;
   const auto make = [&](vk::Format format) {
@@ -175,9 +182,9 @@ void StylePass::makeTargets(const gpu::Texture& ground_depth) {
 }
 
 void StylePass::prepare(const GpuScene& scene, const View& view, const gpu::Texture& ground_depth,
-                        float haze) {
+                        ImpostorPass& impostors, float haze) {
   const bool make = !*backdrop_.image;
-  layers_.prepare(scene, view, ground_depth, make);
+  layers_.prepare(scene, view, ground_depth, make, impostors);
   if (make) makeTargets(ground_depth);
   const glm::mat3 axes = cameraAxes(view.camera);
   const float near = clipFromWorld(view.camera, 1.0f)[3].z;  // clip z of all points
@@ -203,13 +210,13 @@ void StylePass::recordBlur(const vk::raii::CommandBuffer& commands, const Blur& 
 }
 
 void StylePass::record(const vk::raii::CommandBuffer& commands, vk::DescriptorSet frame_set,
-                       const GpuScene& scene, const View& view, const gpu::Texture& ground_depth,
-                       const gpu::Texture& target) const {
+                       const GpuScene& scene, const View& view, const ImpostorPass& impostors,
+                       const gpu::Texture& ground_depth, const gpu::Texture& target) const {
   gpu::imageBarrier(commands, *ground_depth.image, kDepthAspect, gpu::Use::kDepthAttachment,
                     gpu::Use::kFragmentSampled);
   gpu::imageBarrier(commands, *backdrop_.image, kColorAspect, gpu::Use::kColorAttachment,
                     gpu::Use::kFragmentSampled);
-  layers_.record(commands, frame_set, scene, view);
+  layers_.record(commands, frame_set, scene, view, impostors);
   const auto push = [&](const vk::raii::PipelineLayout& layout) {
     commands.pushConstants<shared::StyleUniforms>(*layout, vk::ShaderStageFlagBits::eFragment, 0,
                                                   uniforms_);

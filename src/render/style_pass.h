@@ -18,17 +18,17 @@ class StylePass {
             vk::DescriptorSetLayout motion_set);
 
   /// The next frame has other targets.
-  void forgetTargets() { backdrop_ = {}; }
+  void forgetTargets();
   /// `ground_depth`: of the photo's samples. `haze`: half distance, m.
   void prepare(const GpuScene& scene, const View& view, const gpu::Texture& ground_depth,
-               float haze);
+               ImpostorPass& impostors, float haze);
   /// Where the photo without plants belongs, sRGB; must be kColorAttachment before record().
   const gpu::Texture& backdrop() const { return backdrop_; }
   /// Outside of rendering. `ground_depth` must be kDepthAttachment. Leaves `target` as
   /// kColorAttachment.
   void record(const vk::raii::CommandBuffer& commands, vk::DescriptorSet frame_set,
-              const GpuScene& scene, const View& view, const gpu::Texture& ground_depth,
-              const gpu::Texture& target) const;
+              const GpuScene& scene, const View& view, const ImpostorPass& impostors,
+              const gpu::Texture& ground_depth, const gpu::Texture& target) const;
 
  private:
   /// A picture and what it is when it is blurred.

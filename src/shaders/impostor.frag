@@ -50,15 +50,27 @@ void main() {
     if (kTransmission) diffuse += k_t * meanCosine(-n, l);
   }
   vec3 visibility = vec3(1.0);
-  vec3 surface = position + v * (shown.nearer * scale);
   if (kShadow) {
-    // Beyond the maps only what the plant's own leaves leave open is known.
-    vec2 at = abs(cascadePosition(int(frame.to_sun.w) - 1, surface).xy - 0.5);
-    float mapped = 1.0 - smoothstep(0.42, 0.48, max(at.x, at.y));
-    visibility = vec3(smoothstep(0.0, 0.6, shown.light.r));
-    if (mapped > 0.0)
-      visibility = mix(visibility, sunVisibility(surface, v, kind.leaf, false), mapped);
+    // What shades it of its own crown is known on the mean; the maps tell the rest.
+    vec3 ray = normalize(local - local_eye);
+    vec3 from = (local - ray * shown.nearer - kind.crown.xyz) / kind.radii.xyz;
+    vec3 to_sun = turnedToPlant(l) / kind.radii.xyz;
+    float way = wayThroughCrown(from, to_sun);
+    vec3 passed = vec3(0.0);  // by a leaf
+    if (kShadowSource != kShadowMap) passed = exp(-kind.leaf.w * kind.leaf.rgb);
+    visibility = exp(-kind.crown.w * way * (vec3(1.0) - passed) * shown.light.g);
+    float out_m = (way / max(length(to_sun), 1e-6) + 0.02 * kind.sphere.w) * scale;
+    vec3 outside = position + v * (shown.nearer * scale) + l * out_m;
+    visibility *= sunVisibility(outside, l, kind.leaf, false);
   }
-  vec3 lit = illumination(ambient, frame.sun_light.rgb, visibility, diffuse, 0.0, 0.0);
+  // Facets that face all ways mirror evenly into all directions (as a sphere does): an eighth of
+  // what falls on leaves whose front is glossy, by Schlick's Fresnel factor.
+  float mirrored = 0.0;
+  if (kGloss) {
+    float grazing = 1.0 - abs(dot(normalize(l + v), l));
+    mirrored = 0.125 * (0.034 + 0.966 * grazing * grazing * grazing * grazing * grazing) *
+               shown.light.g;
+  }
+  vec3 lit = illumination(ambient, frame.sun_light.rgb, visibility, diffuse, 1.0, mirrored);
   out_color = vec4(clamp(hazed(lit, position), vec3(0.0), vec3(65000.0)), 1.0);
 }

@@ -58,6 +58,22 @@ Shown shownThere(ImpostorKind kind) {
   return shown;
 }
 
+/// How much the nearest picture alone says that it covers: for the sun's maps, which are finer than
+/// the pictures and need many texels.
+float coveredInNearest(ImpostorKind kind) {
+  uint view = weights.x >= max(weights.y, weights.z) ? views.x
+              : weights.y >= weights.z               ? views.y
+                                                     : views.z;
+  vec2 cell = vec2(float(view % kind.views), float(view / kind.views));
+  vec3 toward = octahedronDirection(cell / (float(kind.views) - 1.0));
+  vec2 at = placeInView(kind.sphere, normalize(local - local_eye), toward, 0.0);
+  return texture(impostor_color, vec3(at, float(view))).a;
+}
+
+vec3 turnedToPlant(vec3 v) {
+  return vec3(turn.x * v.x - turn.y * v.z, v.y, turn.x * v.z + turn.y * v.x);
+}
+
 vec3 turnedToWorld(vec3 v) {
   return vec3(turn.x * v.x + turn.y * v.z, v.y, turn.x * v.z - turn.y * v.x);
 }

@@ -13,7 +13,6 @@ vec2 roundedDown(vec2 value) {
 
 void main() {
   ImpostorKind kind = kinds[job.kind];
-  Shown shown = shownThere(kind);
-  if (shown.covered <= pixelThreshold(scrambled(seat.x))) discard;
+  if (coveredInNearest(kind) <= pixelThreshold(scrambled(seat.x))) discard;
   out_texel = vec4(roundedDown(vec2(1.0 - gl_FragCoord.z, gl_FragCoord.z)), 1.0, kind.leaf.w);
 }

@@ -7,5 +7,5 @@
 
 void main() {
   ImpostorKind kind = kinds[job.kind];
-  if (shownThere(kind).covered <= pixelThreshold(scrambled(seat.x))) discard;
+  if (coveredInNearest(kind) <= pixelThreshold(scrambled(seat.x))) discard;
 }

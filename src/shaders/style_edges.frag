@@ -17,9 +17,8 @@ void main() {
   outline *= 1.0 - 0.75 * smoothstep(0.5, 0.85, wide.cover);
   // Around wood that is seen.
   float front = blurredDepthTest(wood.depth, 1.03 * broad.depth, 0.03);
-  float bark = lineAlong(borderOf(wood_layer, at, 0.5, 0.05), 1.4 * unit);
-  float thick = smoothstep(0.5, 1.0, wood.cover);
-  outline = max(outline, bark * mix(0.7, 1.0, thick) * mix(1.0, front, insideBorder(distance, 2.0)));
+  outline = max(outline, barkInk(wood, at, 1.4 * unit) *
+                             mix(1.0, front, insideBorder(distance, 2.0)));
   // Within it: more where it is dark.
   float dark = 1.0 - smoothstep(0.45, 0.85, foliageTone(broad, broad, wide));
   float interior = normalInk(unit) * mix(0.35, 1.0, dark);

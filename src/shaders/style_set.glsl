@@ -106,22 +106,31 @@ float normalInk(float unit) {
   return smoothstep(0.06, 0.17, change) * smoothstep(0.005, 0.05, change - beside);
 }
 
-/// Profiles of the depths that are seen. Leaves lie at all depths of a crown: among them normals
-/// alone make lines. Twigs are a line themselves. Far off lines fade, and with them the horizon.
+/// Profiles of the depths that are seen, of wood before wood and of ground before ground: leaves lie
+/// at all depths of a crown, and borders of layers have lines of their own (lineAlong()). Far off
+/// they fade, and with them the horizon.
 float depthInk(float unit) {
   vec2 at = placeInPicture(), step = unit / style.picture.xy;
   float v[9];
-  float nearest = 8.0 / style.picture.w, foliage = 0.0, wood = 0.0;
+  float nearest = 8.0 / style.picture.w;
+  vec3 low = vec3(1.0), high = vec3(0.0);  // shares of foliage, of wood, of both
   for (int i = 0; i < 9; ++i) {
     vec4 near = textureLod(seen_depths, at + step * vec2(float(i % 3 - 1), float(i / 3 - 1)), 0.0);
     v[i] = near.w;
     nearest = max(nearest, near.w);
-    foliage = max(foliage, near.x);
-    wood = max(wood, near.y);
+    vec3 shares = vec3(near.xy, near.x + near.y);
+    low = min(low, shares);
+    high = max(high, shares);
   }
+  float alike = max(smoothstep(0.6, 0.95, low.y), 1.0 - smoothstep(0.0, 0.1, high.z));
   float profile = profileStrength(firstDifference(v), secondDifference(v), nearest);
-  float thin = wood > 0.02 ? smoothstep(0.6, 1.0, wood) : 1.0;
-  return thin * smoothstep(0.02, 0.07, profile) * (1.0 - smoothstep(0.02, 0.25, foliage));
+  return alike * smoothstep(0.02, 0.07, profile);
+}
+
+/// Lines around wood that is seen; twigs, which are a line themselves, have lighter ones.
+float barkInk(Layer wood, vec2 at, float width) {
+  float line = lineAlong(borderOf(wood_layer, at, 0.5, 0.05), width);
+  return line * mix(0.6, 1.0, smoothstep(0.5, 1.0, wood.cover));
 }
 
 /// To the display.

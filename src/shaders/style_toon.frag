@@ -43,6 +43,7 @@ void main() {
   color = mix(color, toned(clearColor(c.rgb / max(c.a, 1e-4)), level), shape * (1.0 - front));
   float lines = lineAlong(distance, 2.0 * unit) * (1.0 - front);
   lines *= 1.0 - 0.8 * smoothstep(0.55, 0.85, wide.cover);
-  lines = max(lines, depthInk(max(round(unit), 1.0)) * max(front, 1.0 - shape));
+  lines = max(lines, max(barkInk(wood, at, 1.8 * unit), depthInk(max(round(unit), 1.0))) *
+                         max(front, 1.0 - shape));
   writeLinear(color * mix(1.0, 0.06, lines));
 }

@@ -70,8 +70,7 @@ void main() {
                             flow * shape * glaze(d3, 1.8, 0.35, unit));
   }
   // The pencil drawing below shows through.
-  float bark_line = lineAlong(borderOf(wood_layer, at, 0.5, 0.05), 1.2 * unit);
-  float pencil = max(0.6 * normalInk(unit), bark_line * open);
+  float pencil = max(0.6 * normalInk(unit), barkInk(wood, at, 1.2 * unit) * open);
   color *= 1.0 - 0.45 * pencil * mix(0.5, 1.0, 1.0 - sheet.r);
   writeLinear(color);
 }

@@ -67,6 +67,8 @@ const uint kImpostorVertices = 24u;
 struct ImpostorKind {
   vec4 sphere;  ///< of its pictures: middle and radius, plant's coordinates
   vec4 leaf;    ///< of its leaves, as DrawUniforms
+  vec4 crown;   ///< verdure::Impostor's: middle of the ellipsoid, extinction
+  vec4 radii;   ///< of that
   vec4 reach;   ///< as ForestKindData
   uint meshes;
   uint views;  ///< a side
@@ -78,7 +80,7 @@ struct ImpostorKind {
   uint padding1;
   uint padding2;
 };
-SHARED_SIZE(ImpostorKind, 176);
+SHARED_SIZE(ImpostorKind, 208);
 
 /// Push constants of its draws.
 struct ImpostorJob {
@@ -152,6 +154,16 @@ SHARED_FUNCTION uint keptSamples(uint fade, float noise) {
   uint mask = (1u << count) - 1u;
   mask = ((mask << turn) | (mask >> (4u - turn))) & 15u;
   return (fade & kForestRest) != 0u ? 15u - mask : mask;
+}
+
+/// How far light has come through a crown that arrives at `from`, in radii of a sphere: both in
+/// coordinates in which the crown's ellipsoid is the unit sphere. `toward` the light, any length.
+SHARED_FUNCTION float wayThroughCrown(vec3 from, vec3 toward) {
+  float size = length(toward);
+  vec3 d = toward * (1.0f / max(size, 1e-20f));
+  float along = dot(from, d);
+  float square = along * along + 1.0f - dot(from, from);
+  return square > 0.0f ? max(sqrt(square) - along, 0.0f) : 0.0f;
 }
 
 /// Irradiance by direction on leaves that face all ways, of which `normal` is the mean: the cosine

@@ -74,6 +74,7 @@ bool BackgroundJob::busy() const {
 
 std::optional<BackgroundJob::Status> BackgroundJob::status() const {
   const std::lock_guard lock(mutex_);
+  if (!status_ && waiting_) return Status{waiting_->title, "", -1.0};
   return status_;
 }
 

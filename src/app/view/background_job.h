@@ -51,7 +51,7 @@ class BackgroundJob {
     std::string title, step;
     double share = -1.0;
   };
-  std::optional<Status> status() const;  ///< of what runs
+  std::optional<Status> status() const;  ///< of what runs, or is about to
   /// What the last failed job threw, once.
   std::optional<std::string> takeError();
 

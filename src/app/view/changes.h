@@ -3,11 +3,12 @@
 
 namespace verdure::app {
 
-/// What must be done when a setting becomes another: each includes those before it.
+/// What must be done when a setting becomes another: the later ones include that it is drawn again.
 enum class Change {
   kNothing,
   kPicture,  ///< draw again
-  kBake,     ///< bake the plants' light again
+  kMotion,   ///< find again how a plant answers wind
+  kBake,     ///< bake a plant's light again
   kScene,    ///< load the scene again
 };
 

@@ -139,10 +139,9 @@ void Gui::menu() {
 }
 
 void Gui::keys(const WindowInput& input) {
-  const bool control =
-      held(*window_, GLFW_KEY_LEFT_CONTROL) || held(*window_, GLFW_KEY_RIGHT_CONTROL);
-  const bool shift = held(*window_, GLFW_KEY_LEFT_SHIFT) || held(*window_, GLFW_KEY_RIGHT_SHIFT);
-  for (const int key : input.keys) {
+  for (const auto& [key, modifiers] : input.keys) {
+    const bool control = (modifiers & GLFW_MOD_CONTROL) != 0;
+    const bool shift = (modifiers & GLFW_MOD_SHIFT) != 0;
     if (key == GLFW_KEY_F12 && shift)
       capture_ = "verdure-window.png";
     else if (key == GLFW_KEY_F12)

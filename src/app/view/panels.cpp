@@ -224,6 +224,10 @@ Change lightPanel(ViewSession& session) {
     }
   }
   ImGui::Separator();
+  constexpr std::array kInspected{"the light",        "normals",      "ambient coefficient",
+                                  "layers of leaves", "branch level", "texels a pixel",
+                                  "base colour"};
+  if (choice("show", session.inspected, kInspected)) session.refresh();
   constexpr std::array kBeside{"nothing", "another preset", "the path tracer"};
   int beside = static_cast<int>(session.beside);
   if (choice("beside it", beside, kBeside)) {
@@ -415,6 +419,7 @@ void drawPanels(ViewSession& session, PanelState& state) {
   run("Sun and sky", false, [&] { return skyPanel(session.settings, state); });
   run("Exposure", false, [&] { return exposurePanel(session.settings, session); });
   run("Wind", false, [&] { return windPanel(session); });
+  run("Branches", false, [&] { return motionPanel(session, state); });
   run("Ground", false, [&] { return groundPanel(session.settings); });
   run("Camera", false, [&] {
     cameraPanel(session);

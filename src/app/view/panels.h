@@ -14,6 +14,7 @@ namespace verdure::app {
 struct PanelState {
   std::size_t plant = 0;  ///< of the scene's, the one whose parameters are shown
   double hour = 12.0;     ///< of the day that is shown
+  int branch = 0;         ///< of the plant's MotionTree
 };
 
 /// All of them, in the current ImGui window.
@@ -26,6 +27,7 @@ Change lightPanel(ViewSession& session);
 Change skyPanel(SceneSettings& settings, PanelState& state);
 Change exposurePanel(SceneSettings& settings, const ViewSession& session);
 Change windPanel(ViewSession& session);
+Change motionPanel(ViewSession& session, PanelState& state);
 Change groundPanel(SceneSettings& settings);
 void cameraPanel(ViewSession& session);
 void timesPanel(const ViewSession& session);

@@ -58,6 +58,12 @@ struct Screen::State {
     frames.forgetScene();
     scene.emplace(device, std::move(packed), frames.sceneLayouts());
   }
+  Frame draw(const View& view, Inspection what, const gpu::Texture* target) {
+    GpuScene& shown = sceneOrEmpty();
+    frames.inspect(what);
+    return frames.draw(shown, what == Inspection::kNothing ? view : inspectedView(view, what),
+                       target);
+  }
   /// A picture's texture, black if it is new.
   GuiTexture& pictureOf(std::size_t index, int width, int height) {
     std::unique_ptr<GuiTexture>& picture = pictures[index];
@@ -120,11 +126,11 @@ bool Screen::setLight(const PackedLight& light) {
   return fits;
 }
 
-Frame Screen::draw(int picture, const View& view) {
+Frame Screen::draw(int picture, const View& view, Inspection what) {
   Frame frame = guarded([&] {
     const GuiTexture& target =
         state_->pictureOf(static_cast<std::size_t>(picture), view.width, view.height);
-    return state_->frames.draw(state_->sceneOrEmpty(), view, &target.texture);
+    return state_->draw(view, what, &target.texture);
   });
   frame.times.pack_ms = state_->pack_ms;
   return frame;
@@ -142,8 +148,8 @@ void* Screen::texture(int picture) const {
   return state_->pictures[static_cast<std::size_t>(picture)].get();
 }
 
-Frame Screen::read(const View& view) {
-  return guarded([&] { return state_->frames.draw(state_->sceneOrEmpty(), view); });
+Frame Screen::read(const View& view, Inspection what) {
+  return guarded([&] { return state_->draw(view, what, nullptr); });
 }
 
 bool Screen::present(const ImDrawData& panels, Image* capture) {

@@ -9,6 +9,7 @@
 struct ImDrawData;
 
 namespace verdure {
+enum class Inspection;
 struct PackedLight;
 struct PackedScene;
 }  // namespace verdure
@@ -40,14 +41,14 @@ class Screen {
 
   /// Two pictures can be shown side by side.
   static constexpr int kPictures = 2;
-  /// Draws one; Frame::image is empty.
-  Frame draw(int picture, const View& view);
+  /// Draws one; Frame::image is empty. `what`: one quantity instead of the light.
+  Frame draw(int picture, const View& view, Inspection what);
   /// Or shows one that was made elsewhere.
   void setPicture(int picture, const Image& image);
   /// Of a picture, an ImTextureID; null: there is none yet.
   void* texture(int picture) const;
   /// Draws and reads back, for files.
-  Frame read(const View& view);
+  Frame read(const View& view, Inspection what);
 
   /// Shows panels, and pictures where they use them. False: nothing can be shown now. `capture`, if
   /// given, gets what the window shows; it stays empty where that cannot be read.

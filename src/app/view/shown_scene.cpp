@@ -9,33 +9,52 @@
 namespace verdure::app {
 
 ShownScene::ShownScene(std::shared_ptr<const LoadedScene> loaded)
-    : loaded_(std::move(loaded)), bakes_(loaded_->plants().size()) {
+    : loaded_(std::move(loaded)), bakes_(loaded_->plants().size()), motions_(bakes_.size()) {
   link();
+}
+
+const PlantMotion* ShownScene::motion(std::size_t plant) const {
+  if (motions_[plant]) return motions_[plant].get();
+  const std::optional<PlantMotion>& loaded = loaded_->plants()[plant].motion;
+  return loaded ? &*loaded : nullptr;
 }
 
 std::shared_ptr<const ShownScene> ShownScene::with(std::size_t plant,
                                                    std::shared_ptr<const PlantBake> bake) const {
   auto other = std::make_shared<ShownScene>(loaded_);
   other->bakes_ = bakes_;
+  other->motions_ = motions_;
   other->bakes_[plant] = std::move(bake);
+  other->link();
+  return other;
+}
+
+std::shared_ptr<const ShownScene> ShownScene::with(
+    std::size_t plant, std::shared_ptr<const PlantMotion> motion) const {
+  auto other = std::make_shared<ShownScene>(loaded_);
+  other->bakes_ = bakes_;
+  other->motions_ = motions_;
+  other->motions_[plant] = std::move(motion);
   other->link();
   return other;
 }
 
 void ShownScene::link() {
   scene_ = loaded_->scene();
-  const std::vector<LoadedPlant>& plants = loaded_->plants();
-  for (std::size_t i = 0; i < plants.size(); ++i) {
-    if (!bakes_[i]) continue;
-    for (SceneItem& item : scene_.items)
-      if (item.plant == &plants[i].plant) item.light = &bakes_[i]->light;
+  if (scene_.forest != nullptr) {
+    forest_ = *scene_.forest;
+    scene_.forest = &forest_;
   }
-  if (scene_.forest == nullptr) return;
-  forest_ = *scene_.forest;
-  for (std::size_t i = 0; i < plants.size(); ++i)
-    for (ForestKind& kind : forest_.kinds)
-      if (bakes_[i] && kind.plant == &plants[i].plant) kind.light = &bakes_[i]->light;
-  scene_.forest = &forest_;
+  const std::vector<LoadedPlant>& plants = loaded_->plants();
+  const auto relink = [&](std::size_t i, auto& user) {  // a SceneItem or a ForestKind
+    if (user.plant != &plants[i].plant) return;
+    if (bakes_[i]) user.light = &bakes_[i]->light;
+    if (motions_[i] && user.motion != nullptr) user.motion = motions_[i].get();
+  };
+  for (std::size_t i = 0; i < plants.size(); ++i) {
+    for (SceneItem& item : scene_.items) relink(i, item);
+    for (ForestKind& kind : forest_.kinds) relink(i, kind);
+  }
 }
 
 PlantBake bakePlant(const Plant& plant, const CrownLight* before, const BakeParameters& parameters,

@@ -21,8 +21,8 @@ struct PlantBake {
   double seconds = 0.0;
 };
 
-/// A loaded scene, and bakes of its plants that were made since. Does not change: another bake
-/// makes another one, so that any thread may look at it.
+/// A loaded scene, and bakes and motions of its plants that were made since. Does not change:
+/// another bake makes another one, so that any thread may look at it.
 class ShownScene {
  public:
   explicit ShownScene(std::shared_ptr<const LoadedScene> loaded);
@@ -32,15 +32,20 @@ class ShownScene {
   const Scene& scene() const { return scene_; }
   /// Of a plant; null: as it was loaded.
   const PlantBake* bake(std::size_t plant) const { return bakes_[plant].get(); }
-  /// The same with another bake of a plant.
+  /// How a plant moves; null: not at all.
+  const PlantMotion* motion(std::size_t plant) const;
+  /// The same with another bake of a plant, or another motion.
   std::shared_ptr<const ShownScene> with(std::size_t plant,
                                          std::shared_ptr<const PlantBake> bake) const;
+  std::shared_ptr<const ShownScene> with(std::size_t plant,
+                                         std::shared_ptr<const PlantMotion> motion) const;
 
  private:
   void link();
 
   std::shared_ptr<const LoadedScene> loaded_;
-  std::vector<std::shared_ptr<const PlantBake>> bakes_;  ///< of each plant
+  std::vector<std::shared_ptr<const PlantBake>> bakes_;      ///< of each plant, or null
+  std::vector<std::shared_ptr<const PlantMotion>> motions_;  ///< of each plant, or null
   Scene scene_;
   Forest forest_;
 };

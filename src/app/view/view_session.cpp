@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/plant_prep.h"
+#include "app/view/orbit_camera.h"
 #include "shared/tone.h"
 #include "verdure/error.h"
 
@@ -15,6 +17,7 @@ namespace {
 constexpr double kSlow_s = 0.1, kFast_s = 0.045;
 constexpr float kLeastScale = 0.3f;
 constexpr double kRest_s = 0.25;
+constexpr float kLeastHeight = 2e-3f;  // of the eye over the ground, in the scene's reach
 
 bool same(const DaylightSettings& a, const DaylightSettings& b) {
   const bool same_place = a.place.has_value() == b.place.has_value() &&
@@ -59,10 +62,9 @@ void ViewSession::changed(Change change, std::size_t plant) {
   if (change == Change::kNothing) return;
   modified_ = true;
   if (change == Change::kScene) return load(false);
-  if (change == Change::kBake) {
-    stale_bakes_.insert(plant);
-    bake();
-  }
+  if (change == Change::kBake) stale_bakes_.insert(plant);
+  if (change == Change::kMotion) stale_motions_.insert(plant);
+  if (change >= Change::kMotion) renew();
   rebuildView();
 }
 
@@ -162,6 +164,7 @@ void ViewSession::load(bool new_scene) {
       home_ = home;
       ++scene_number_;
       stale_bakes_.clear();
+      stale_motions_.clear();
       if (new_scene) {
         view_.camera = home;
         if (wanted.camera.eye)
@@ -179,44 +182,75 @@ void ViewSession::lightChanged(const LookSettings& before) {
     if (!settings.plants[p].bake && p < shown_->loaded().plants().size() &&
         !bakedInFile(shown_->loaded().plants()[p].plant))
       stale_bakes_.insert(p);
-  if (!stale_bakes_.empty()) bake();
+  if (!stale_bakes_.empty()) renew();
 }
 
-void ViewSession::bake() {
+void ViewSession::renew() {
   if (!shown_) return;
   const std::size_t count = std::min(shown_->loaded().plants().size(), settings.plants.size());
-  std::erase_if(stale_bakes_, [count](std::size_t plant) { return plant >= count; });
-  job_.start("baking", [this, shown = shown_, plants = stale_bakes_, wanted = settings.plants,
-                        field = fieldOf(settings.look)](BackgroundJob::Control& control) {
-    std::shared_ptr<const ShownScene> next = shown;
-    // First as it can be seen at once, then as it is to be.
-    for (const bool preview : {true, false})
-      for (const std::size_t p : plants) {
-        const LoadedPlant& plant = next->loaded().plants()[p];
-        auto made = std::make_shared<const PlantBake>(
-            bakePlant(plant.plant, plant.light ? &*plant.light : nullptr,
-                      wanted[p].bake.value_or(BakeParameters()), field, preview,
-                      [&](const std::string& step, double share) {
-                        control.show((preview ? "preview: " : "") + step, share, !preview);
-                      }));
-        next = next->with(p, made);
-        const bool whole = !allLit(next->scene());
-        const auto light = whole ? nullptr : packedLight(next->scene());
-        const auto packed = whole ? packedScene(next->scene()) : nullptr;
-        control.handOver([this, next, light, packed, p, preview] {
-          if (!shown_ || &shown_->loaded() != &next->loaded()) return;
-          try {
-            if (!light || !screen_->setLight(*light))
-              screen_->setScene(packed ? packed : packedScene(next->scene()));
-          } catch (const std::exception& e) {
-            return fail(e);
-          }
-          shown_ = next;
-          if (!preview) stale_bakes_.erase(p);
-          dirty_[0] = dirty_[1] = true;
-        });
-      }
+  for (std::set<std::size_t>* stale : {&stale_bakes_, &stale_motions_})
+    std::erase_if(*stale, [count](std::size_t plant) { return plant >= count; });
+  job_.start(stale_bakes_.empty() ? "motion" : "baking",
+             [this, next = shown_, bakes = stale_bakes_, motions = stale_motions_,
+              wanted = settings.plants,
+              field = fieldOf(settings.look)](BackgroundJob::Control& control) mutable {
+               // First as it can be seen at once, then as it is to be.
+               for (const std::size_t p : bakes)
+                 next = renewBake(next, p, wanted[p], field, true, control);
+               for (const std::size_t p : motions) next = renewMotion(next, p, wanted[p], control);
+               for (const std::size_t p : bakes)
+                 next = renewBake(next, p, wanted[p], field, false, control);
+             });
+}
+
+std::shared_ptr<const ShownScene> ViewSession::renewBake(
+    const std::shared_ptr<const ShownScene>& before, std::size_t p, const PlantSettings& wanted,
+    BakeField field, bool preview, BackgroundJob::Control& control) {
+  const LoadedPlant& plant = before->loaded().plants()[p];
+  auto made = std::make_shared<const PlantBake>(bakePlant(
+      plant.plant, plant.light ? &*plant.light : nullptr, wanted.bake.value_or(BakeParameters()),
+      field, preview, [&](const std::string& step, double share) {
+        control.show((preview ? "preview: " : "") + step, share, !preview);
+      }));
+  const std::shared_ptr<const ShownScene> next = before->with(p, made);
+  const bool whole = !allLit(next->scene());
+  const auto light = whole ? nullptr : packedLight(next->scene());
+  const auto packed = whole ? packedScene(next->scene()) : nullptr;
+  control.handOver([this, next, light, packed, p, preview] {
+    if (!shown_ || &shown_->loaded() != &next->loaded()) return;
+    try {
+      if (!light || !screen_->setLight(*light))
+        screen_->setScene(packed ? packed : packedScene(next->scene()));
+    } catch (const std::exception& e) {
+      return fail(e);
+    }
+    shown_ = next;
+    if (!preview) stale_bakes_.erase(p);
+    dirty_[0] = dirty_[1] = true;
   });
+  return next;
+}
+
+std::shared_ptr<const ShownScene> ViewSession::renewMotion(
+    const std::shared_ptr<const ShownScene>& before, std::size_t p, const PlantSettings& wanted,
+    BackgroundJob::Control& control) {
+  control.show("branches in wind", -1.0);
+  auto made = std::make_shared<const PlantMotion>(
+      motionOf(before->loaded().plants()[p].plant, wanted.motion.value_or(MotionSettings())));
+  const std::shared_ptr<const ShownScene> next = before->with(p, made);
+  const std::shared_ptr<PackedScene> packed = packedScene(next->scene());
+  control.handOver([this, next, packed, p] {
+    if (!shown_ || &shown_->loaded() != &next->loaded()) return;
+    try {
+      screen_->setScene(packed);
+    } catch (const std::exception& e) {
+      return fail(e);
+    }
+    shown_ = next;
+    stale_motions_.erase(p);
+    dirty_[0] = dirty_[1] = true;
+  });
+  return next;
 }
 
 void ViewSession::saveScene(const std::filesystem::path& path) {
@@ -254,7 +288,7 @@ void ViewSession::saveScreenshot(std::filesystem::path path) {
     View view = view_;
     const glm::ivec2 size = drawn_size_[0];
     if (size.x > 0 && !coarse_) std::tie(view.width, view.height) = std::tie(size.x, size.y);
-    writePng(screen_->read(view).image, path);
+    writePng(screen_->read(view, static_cast<Inspection>(inspected)).image, path);
     message = "saved " + path.string();
   } catch (const std::exception& e) {
     fail(e);
@@ -278,7 +312,7 @@ void ViewSession::startClip(const std::filesystem::path& path, int frames, int f
 void ViewSession::drawClipFrame() {
   try {
     Clip& clip = *clip_;
-    const Frame frame = screen_->read(clip.view);
+    const Frame frame = screen_->read(clip.view, static_cast<Inspection>(inspected));
     clip.video.add(frame.image, clip.next);
     if (clip.next == 0) {  // lit and exposed as its first
       if (!clip.view.exposure.ev && frame.average_luminance > 0.0f)
@@ -299,6 +333,15 @@ void ViewSession::drawClipFrame() {
 
 void ViewSession::moveCamera(const Camera& camera) {
   view_.camera = camera;
+  // Nothing is seen from below the ground.
+  if (const Scene* scene = shown_ ? &shown_->scene() : nullptr) {
+    const float above = kLeastHeight * reach();
+    if (scene->terrain != nullptr)
+      view_.camera =
+          raisedTo(camera, scene->terrain->heightAt({camera.eye.x, camera.eye.z}) + above);
+    else if (scene->ground)
+      view_.camera = raisedTo(camera, scene->ground_height + above);
+  }
   dirty_[0] = dirty_[1] = true;
   since_change_.lap();
 }
@@ -364,7 +407,7 @@ void ViewSession::draw(const glm::ivec2& area) {
       view.width = size.x;
       view.height = size.y;
       const Timer timer;
-      frames_[picture] = screen_->draw(picture, view);
+      frames_[picture] = screen_->draw(picture, view, static_cast<Inspection>(inspected));
       draw_seconds_ = timer.seconds();
       if (moves && draw_seconds_ > kSlow_s) scale_ = std::max(scale_ * 0.75f, kLeastScale);
       if (moves && draw_seconds_ < kFast_s) scale_ = std::min(scale_ * 1.15f, 1.0f);
@@ -395,7 +438,8 @@ double ViewSession::rest() const {
 }
 
 bool ViewSession::settled() const {
-  return !job_.busy() && !clip_ && !coarse_ && !dirty_[0] && stale_bakes_.empty();
+  return !job_.busy() && !clip_ && !coarse_ && !dirty_[0] && stale_bakes_.empty() &&
+         stale_motions_.empty();
 }
 
 std::optional<BackgroundJob::Status> ViewSession::status() const {

@@ -31,10 +31,11 @@ class ViewSession {
   Beside beside = Beside::kNothing;
   std::string beside_light = "standard";  ///< preset
   bool playing = false;                   ///< wind blows on
+  int inspected = 0;                      ///< Inspection of render/inspect_pass.h
   bool show_surface = false;              ///< of the first plant's metaball field
   std::string message;                    ///< what failed last
 
-  /// A setting is another. `plant`: whose bake, for Change::kBake.
+  /// A setting is another. `plant`: whose bake or motion.
   void changed(Change change, std::size_t plant = 0);
 
   /// The preset is another than that of `before`: plants that are baked as it has it are baked
@@ -95,7 +96,15 @@ class ViewSession {
   };
 
   void load(bool new_scene);
-  void bake();
+  void renew();  ///< bakes and motions that are stale
+  // Of renew(), on its thread: hand over what they make, and return it.
+  std::shared_ptr<const ShownScene> renewBake(const std::shared_ptr<const ShownScene>& before,
+                                              std::size_t p, const PlantSettings& wanted,
+                                              BakeField field, bool preview,
+                                              BackgroundJob::Control& control);
+  std::shared_ptr<const ShownScene> renewMotion(const std::shared_ptr<const ShownScene>& before,
+                                                std::size_t p, const PlantSettings& wanted,
+                                                BackgroundJob::Control& control);
   void rebuildView();
   View viewWith(const LookSettings& look) const;
   void drawClipFrame();
@@ -107,9 +116,9 @@ class ViewSession {
   bool modified_ = false;
 
   std::shared_ptr<const ShownScene> shown_;
-  int scene_number_ = 0;  ///< of what was loaded
-  Camera home_;           ///< sees all of it
-  std::set<std::size_t> stale_bakes_;
+  int scene_number_ = 0;                               ///< of what was loaded
+  Camera home_;                                        ///< sees all of it
+  std::set<std::size_t> stale_bakes_, stale_motions_;  ///< plants
 
   View view_;
   View beside_view_;                             ///< the same with another light

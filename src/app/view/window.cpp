@@ -40,9 +40,9 @@ Window::Window(const std::string& title, int width, int height) {
     throw Error("view", "no window opens" + why, kInstead);
   }
   glfwSetWindowUserPointer(window_, &input_);
-  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
+  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int held) {
     inputOf(window).any = true;
-    if (action != GLFW_RELEASE) inputOf(window).keys.push_back(key);
+    if (action != GLFW_RELEASE) inputOf(window).keys.push_back({key, held});
   });
   glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
     inputOf(window).any = true;

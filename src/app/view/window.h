@@ -14,7 +14,11 @@ namespace verdure::app {
 
 /// What happened to a window since it was last asked.
 struct WindowInput {
-  std::vector<int> keys;                       ///< pressed or repeated: GLFW_KEY_*
+  struct Key {
+    int key = 0;   ///< GLFW_KEY_*
+    int held = 0;  ///< GLFW_MOD_* of keys that were held with it
+  };
+  std::vector<Key> keys;                       ///< pressed or repeated
   std::vector<std::filesystem::path> dropped;  ///< files
   bool any = false;                            ///< anything at all, also what only panels care for
 };

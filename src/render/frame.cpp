@@ -285,12 +285,6 @@ void FrameDrawer::recordColor(const vk::raii::CommandBuffer& commands, const Gpu
     commands.endRendering();
     return;
   }
-  if (inspection_ != Inspection::kNothing) {
-    beginColor(commands, view, true, true);
-    inspect_pass_.record(commands, layout_, *frame_set_, scene, view.terms, inspection_);
-    commands.endRendering();
-    return;
-  }
   const bool terrain = scene.terrain() != nullptr;
   const bool billboards = terrain && billboard_trial_;
   beginColor(commands, view, true, !terrain || billboards);
@@ -392,8 +386,6 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view, const gpu::Texture* t
   if (depth_maps) light_depth_pass_.prepare(*device_, layout_, scene, view.terms);
   const bool photo = view.style == Style::kPhoto;
   if (photo) plant_pass_.prepare(*device_, layout_, scene, view.terms, kind);
-  if (inspection_ != Inspection::kNothing)
-    inspect_pass_.prepare(*device_, layout_, scene, view.terms, inspection_);
   if (inspection_ != Inspection::kNothing)
     inspect_pass_.prepare(*device_, layout_, scene, view.terms, inspection_);
   if (scene.forest() != nullptr) {

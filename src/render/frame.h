@@ -17,7 +17,6 @@
 #include "render/ground_light.h"
 #include "render/impostor_pass.h"
 #include "render/inspect_pass.h"
-#include "render/inspect_pass.h"
 #include "render/light_depth_pass.h"
 #include "render/motion_pass.h"
 #include "render/plant_pass.h"
@@ -62,8 +61,6 @@ class FrameDrawer {
   const GrassBillboards& billboards() const { return grass_billboards_; }
   /// From now on: plants alone, one quantity of them; views should be inspectedView().
   void inspect(Inspection what) { inspection_ = what; }
-  /// From now on: plants alone, one quantity of them; views should be inspectedView().
-  void inspect(Inspection what) { inspection_ = what; }
 
  private:
   void checkView(const View& view) const;
@@ -92,7 +89,6 @@ class FrameDrawer {
   BlockerPass blocker_pass_;
   PlantPass plant_pass_;
   InspectPass inspect_pass_;
-  InspectPass inspect_pass_;
   VelocityPass velocity_pass_;
   BackdropPass backdrop_pass_;
   GrassPass grass_pass_;
@@ -117,7 +113,6 @@ class FrameDrawer {
   std::optional<gpu::Texture> shadow_maps_, foliage_maps_;  ///< a layer for each cascade
   CascadeTrial cascade_trial_;
   std::optional<BillboardTrial> billboard_trial_;
-  Inspection inspection_ = Inspection::kNothing;
   Inspection inspection_ = Inspection::kNothing;
   std::optional<Targets> targets_;
   std::shared_ptr<const Sky> known_sky_;

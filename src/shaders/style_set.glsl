@@ -19,7 +19,7 @@ layout(location = 0) out vec4 out_color;
 /// Lines, borders and grain are as wide in a picture of any size: this many pixels for one of 540
 /// lines' height.
 float unitInPixels() {
-  return max(style.picture.y / 540.0, 0.5);
+  return max(style.picture.y / 540.0, 0.7);
 }
 
 /// A layer's values where it is.

@@ -106,7 +106,7 @@ float normalInk(float unit) {
   return smoothstep(0.06, 0.17, change) * smoothstep(0.005, 0.05, change - beside);
 }
 
-/// Profiles of the depths that are seen, of wood before wood and of ground before ground: leaves lie
+/// Profiles and creases of the depths that are seen, of wood before wood and of ground before ground: leaves lie
 /// at all depths of a crown, and borders of layers have lines of their own (lineAlong()). Far off
 /// they fade, and with them the horizon.
 float depthInk(float unit) {
@@ -123,8 +123,10 @@ float depthInk(float unit) {
     high = max(high, shares);
   }
   float alike = max(smoothstep(0.6, 0.95, low.y), 1.0 - smoothstep(0.0, 0.1, high.z));
-  float profile = profileStrength(firstDifference(v), secondDifference(v), nearest);
-  return alike * smoothstep(0.02, 0.07, profile);
+  float first = firstDifference(v), second = secondDifference(v);
+  float profile = smoothstep(0.02, 0.07, profileStrength(first, second, nearest));
+  float crease = smoothstep(0.6, 0.8, creaseStrength(first, second, nearest, 0.004));
+  return alike * max(profile, 0.7 * crease);
 }
 
 /// Lines around wood that is seen; twigs, which are a line themselves, have lighter ones.

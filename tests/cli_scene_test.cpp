@@ -141,7 +141,7 @@ TEST_F(CommandLineScene, IsTracedToo) {
   const Json report = Json::parse(
       runWell({"reference", file, "-o", path("truth.png"), "--samples", "2", "--json"}));
   EXPECT_EQ(report["width"], 64);
-  EXPECT_EQ(report["notes"].size(), 1u);  // no terrain
+  EXPECT_EQ(report["notes"].size(), 2u);  // no terrain, no tints
   const Image traced = readImage(path("truth.png"));
   runWell({"reference", file, "-o", path("dusk.png"), "--samples", "2", "--sun", "30,3"});
   EXPECT_GT(difference(traced, readImage(path("dusk.png"))), 1.0);

@@ -57,6 +57,11 @@ SceneSettings unusualScene(const fs::path& folder) {
   bake.options.seed = 4000000000u;
   bake.fit = true;
   bake.max_memory_mib = 512.5;
+  MotionSettings& motion = file.motion.emplace();
+  motion.flexibility = 1.7f;
+  motion.level_flexibility = {1.1f, 0.0f, 0.3f, 2.2f};
+  motion.damping_ratio = {0.25f, 0.35f, 0.45f, 0.55f};
+  motion.branches = {{7, 0.0f}, {2, 3.3f}};
   PlantSettings grown = plantOf("elm", {});
   grown.grow.species = "black-oak";
   grown.grow.seed = 77;
@@ -66,6 +71,7 @@ SceneSettings unusualScene(const fs::path& folder) {
   grown.grow.leaf_age = 0.9f;
   s.plants = {file, grown};
   s.placements = {{1, {1.1f, 0.3f, -2.7f}, 2.0f, 0.7f, 0x12ab9f, 4000000001u}};
+  s.bake_together = true;
   s.layouts = {{(folder / "layout.glb").string(), {1, 0}, true, 9.5f}};
   ScatterSettings scatter;
   scatter.kinds = {{1, 2.5f, 0.4f, {0.3f, 1.7f}}};
@@ -127,6 +133,17 @@ void expectSame(const SceneSettings& a, const SceneSettings& b) {
     EXPECT_EQ(p.grow.leaf_age, q.grow.leaf_age);
     EXPECT_EQ(p.load.foliage, q.load.foliage);
     EXPECT_EQ(p.load.wood, q.load.wood);
+    ASSERT_EQ(p.motion.has_value(), q.motion.has_value());
+    if (p.motion) {
+      EXPECT_EQ(p.motion->flexibility, q.motion->flexibility);
+      EXPECT_EQ(p.motion->level_flexibility, q.motion->level_flexibility);
+      EXPECT_EQ(p.motion->damping_ratio, q.motion->damping_ratio);
+      ASSERT_EQ(p.motion->branches.size(), q.motion->branches.size());
+      for (std::size_t n = 0; n < p.motion->branches.size(); ++n) {
+        EXPECT_EQ(p.motion->branches[n].branch, q.motion->branches[n].branch);
+        EXPECT_EQ(p.motion->branches[n].flexibility, q.motion->branches[n].flexibility);
+      }
+    }
     ASSERT_EQ(p.bake.has_value(), q.bake.has_value());
     if (!p.bake) continue;
     const DensityOptions &o = p.bake->options, &r = q.bake->options;
@@ -148,6 +165,7 @@ void expectSame(const SceneSettings& a, const SceneSettings& b) {
   ASSERT_EQ(a.placements.size(), b.placements.size());
   for (std::size_t i = 0; i < a.placements.size(); ++i)
     EXPECT_EQ(std::memcmp(&a.placements[i], &b.placements[i], sizeof(Placement)), 0) << i;
+  EXPECT_EQ(a.bake_together, b.bake_together);
   ASSERT_EQ(a.layouts.size(), b.layouts.size());
   for (std::size_t i = 0; i < a.layouts.size(); ++i) {
     EXPECT_EQ(a.layouts[i].file, b.layouts[i].file);
@@ -564,6 +582,42 @@ TEST(LoadedScene, PlantsThatStandOnceAreDrawnWhole) {
   EXPECT_EQ(shown.forest, nullptr);
   ASSERT_EQ(shown.items.size(), 2u);
   EXPECT_EQ(shown.items[1].world_from_plant.size(), 2u);
+}
+
+TEST(LoadedScene, NeighboursThatAreBakedTogetherDarkenEachOther) {
+  SceneSettings settings;
+  settings.look.light = "expressive";
+  settings.plants = {plantOf("shrub", {})};
+  settings.plants[0].grow.leaf_form = LeafForm::kCard;
+  settings.plants[0].grow.texture_size = 32;
+  settings.plants[0].grow.set = {{"Levels", "2"}, {"Leaves", "6"}};
+  settings.plants[0].bake.emplace();
+  settings.plants[0].bake->options.grid = 24;
+  settings.plants[0].bake->options.rho = 1.5f;
+  settings.bake_together = true;
+  const auto meanAmbients = [&settings](float apart) {
+    settings.placements = {{.plant = 0}, {.plant = 0, .position = {apart, 0, 0}, .angle = 2.0f}};
+    const LoadedScene loaded(settings);
+    const Scene scene = loaded.scene();
+    EXPECT_EQ(scene.items.size(), 2u);
+    std::vector<double> means;
+    for (const SceneItem& item : scene.items) {
+      double sum = 0.0, count = 0.0;
+      if (item.light == nullptr) continue;
+      for (const MeshLight& mesh : item.light->meshes)
+        for (const float k : mesh.ambient) {
+          sum += double{k};
+          ++count;
+        }
+      means.push_back(sum / count);
+    }
+    return means;
+  };
+  const std::vector<double> far = meanAmbients(100.0f), near = meanAmbients(0.6f);
+  ASSERT_EQ(far.size(), 2u);
+  ASSERT_EQ(near.size(), 2u);
+  EXPECT_NEAR(far[0], far[1], 1e-4);  // alone, a turn changes nothing
+  for (const std::size_t i : {0u, 1u}) EXPECT_LT(near[i], far[i] - 0.02) << i;
 }
 
 TEST(LoadedScene, AMarkerStandsForAMissingPlant) {

@@ -95,7 +95,7 @@ LoadedScene::LoadedScene(const SceneSettings& settings, const LoadSceneOptions& 
   loadPlants();
   lightPlants(look);
   makeGround();
-  placePlants();
+  placePlants(look);
   makeLevelsOfMany();
   linkForest();
   if (options_.for_reference) moveInWind(look.wind, look.seconds);
@@ -151,14 +151,14 @@ void LoadedScene::lightPlants(const View& look) {
       if (!settings_.plants[i].bake) plant.light = lightOfFile(plant.plant);
       const bool lacks_transfer =
           shown.terms.ambient_source == AmbientSource::kTransfer && !plant.transfer;
-      if (!plant.light && (any_look || needsBake(shown) || lacks_transfer)) {
+      if (!plant.light && (any_look || needsBake(shown) || lacks_transfer) &&
+          !(bakesTogether(shown) && !any_look && standsInGroupOnly(i))) {
         show("baking");
         const std::optional<BakeParameters>& bake = settings_.plants[i].bake;
         plant.light = bakedLight(plant.plant, bake ? *bake : usual, usualField(settings_.look),
                                  bake_seconds_);
       }
-      if (shown.terms.ambient_source == AmbientSource::kLeafVisibility || any_look)
-        addVisibility(plant);
+      addVisibility(plant, plant.light, shown);
     }
     if (options_.for_reference || any_look || needsLeafNormals(shown))
       restoreLeafNormals(plant.plant);
@@ -175,11 +175,13 @@ void LoadedScene::lightPlants(const View& look) {
   }
 }
 
-void LoadedScene::addVisibility(LoadedPlant& plant) {
-  if (!plant.light) return;
+void LoadedScene::addVisibility(const LoadedPlant& plant, std::optional<CrownLight>& light,
+                                const View& look) {
+  const bool wanted = look.terms.ambient_source == AmbientSource::kLeafVisibility;
+  if (!light || !(wanted || options_.any_look)) return;
   // Leaves alone have it; what has none is drawn by its bake.
   if (options_.any_look && plant.plant.leaves.empty()) return;
-  bake_seconds_ += addLeafVisibility(plant.plant, *plant.light,
+  bake_seconds_ += addLeafVisibility(plant.plant, *light,
                                      [this](double share) { show("leaf visibility", share); });
 }
 
@@ -200,12 +202,12 @@ void LoadedScene::makeGround() {
   }
 }
 
-void LoadedScene::placePlants() {
+void LoadedScene::placePlants(const View& look) {
   const bool placed =
       !settings_.placements.empty() || !settings_.layouts.empty() || !settings_.scatters.empty();
   if (!placed) {  // each as its file has it
     if (!plants_.empty()) ground_height_ = groundHeight(plants_[0].plant);
-    for (std::size_t i = 0; i < plants_.size(); ++i) singles_.emplace_back(i, glm::mat4(1.0f));
+    for (std::size_t i = 0; i < plants_.size(); ++i) singles_.push_back({i, glm::mat4(1.0f), {}});
   }
   if (terrain_) {  // through the ground at x = z = 0
     const float lift = ground_height_ - terrain_->heightAt(glm::vec2(0.0f));
@@ -222,17 +224,75 @@ void LoadedScene::placePlants() {
     feet.push_back(groundHeight(plant.plant));
   }
   // Plants that stand once are drawn whole; tints are for those that stand often.
-  std::size_t kept = 0;
-  for (Placement& place : places) {
-    place.position.y -= place.scale * feet[place.plant];
+  for (Placement& place : places) place.position.y -= place.scale * feet[place.plant];
+  std::size_t kept = 0, first = 0;
+  if (bakesTogether(withoutMissingTransfer(look))) {
+    first = settings_.placements.size();
+    bakeTogether({places.begin(), places.begin() + static_cast<std::ptrdiff_t>(first)}, look);
+  }
+  for (std::size_t i = first; i < places.size(); ++i) {
+    const Placement& place = places[i];
     if (counts[place.plant] == 1 && place.tint == 0xffffff)
-      singles_.emplace_back(place.plant, matrixOf(place));
+      singles_.push_back({place.plant, matrixOf(place), {}});
     else
       places[kept++] = place;
   }
   places.resize(kept);
+  const auto isTinted = [](const Placement& place) { return place.tint != 0xffffff; };
+  if (options_.for_reference && std::any_of(places.begin(), places.end(), isTinted))
+    notes_.push_back("tints are left out: the path tracer does not know them");
   forest_.places = std::move(places);
   forest_.detail = settings_.detail;
+}
+
+bool LoadedScene::standsInGroupOnly(std::size_t plant) const {
+  const auto names = [plant](const std::vector<std::uint32_t>& plants) {
+    return std::find(plants.begin(), plants.end(), plant) != plants.end();
+  };
+  for (const LayoutSettings& layout : settings_.layouts)
+    if (names(layout.plants)) return false;
+  for (const ScatterSettings& scatter : settings_.scatters)
+    for (const ScatterSettings::Kind& kind : scatter.kinds)
+      if (kind.plant == plant) return false;
+  return true;
+}
+
+bool LoadedScene::bakesTogether(const View& look) const {
+  return settings_.bake_together && !options_.for_reference && !settings_.placements.empty() &&
+         (needsBake(look) || options_.any_look);
+}
+
+void LoadedScene::bakeTogether(const std::vector<Placement>& places, const View& look) {
+  if (places.size() > kMostTogether)
+    throw Error("placements", fmt::format("{} are to be baked together", places.size()),
+                fmt::format("up to {} are baked in one field", kMostTogether));
+  show("baking together");
+  std::vector<const Plant*> plants;
+  for (const LoadedPlant& plant : plants_) plants.push_back(&plant.plant);
+  // Markers have no crown.
+  std::vector<Placement> lit;
+  for (const Placement& place : places)
+    if (!plants_[place.plant].missing) lit.push_back(place);
+  const BakeParameters usual;
+  const std::optional<BakeParameters>& given = settings_.plants[places[0].plant].bake;
+  const BakeParameters& parameters = given ? *given : usual;
+  parameters.fieldOr(BakeField::kMetaball);
+  DensityOptions density = parameters.checked();
+  density.progress = [this](const char* step, double share) { show(step, share); };
+  const Timer timer;
+  std::vector<DensityBake> bakes;
+  if (!lit.empty()) bakes = bakeDensityPopulation(plants, lit, density);
+  bake_seconds_ += timer.seconds();
+  std::size_t next = 0;
+  bool tinted = false;
+  for (const Placement& place : places) {
+    Single single{place.plant, matrixOf(place), {}};
+    if (!plants_[place.plant].missing) single.light = std::move(bakes[next++].light);
+    addVisibility(plants_[place.plant], single.light, look);
+    tinted = tinted || place.tint != 0xffffff;
+    singles_.push_back(std::move(single));
+  }
+  if (tinted) notes_.push_back("tints of plants that are baked together are left out");
 }
 
 std::vector<Placement> LoadedScene::allPlaces() {
@@ -316,7 +376,7 @@ void LoadedScene::moveInWind(const Wind& wind, double seconds) {
     if (!plants_[i].motion) continue;
     MotionPlace place;
     for (std::size_t s = 0; s < singles_.size(); ++s)
-      if (singles_[s].first == i) place = {singles_[s].second, static_cast<std::uint32_t>(s)};
+      if (singles_[s].plant == i) place = {singles_[s].world, static_cast<std::uint32_t>(s)};
     movePlant(*plants_[i].motion, wind, seconds, place, plants_[i].plant);
   }
 }
@@ -334,10 +394,12 @@ Scene LoadedScene::scene() const {
   Scene scene;
   scene.ground = settings_.ground.shown;
   scene.ground_height = ground_height_;
-  for (const auto& [index, world] : singles_) {
-    const LoadedPlant& plant = plants_[index];
-    SceneItem item{&plant.plant, plant.light ? &*plant.light : nullptr, {world}};
-    if (plant.transfer && glm::mat3(world) == glm::mat3(1.0f)) item.transfer = &*plant.transfer;
+  for (const Single& single : singles_) {
+    const LoadedPlant& plant = plants_[single.plant];
+    const std::optional<CrownLight>& light = single.light ? single.light : plant.light;
+    SceneItem item{&plant.plant, light ? &*light : nullptr, {single.world}};
+    if (plant.transfer && !single.light && glm::mat3(single.world) == glm::mat3(1.0f))
+      item.transfer = &*plant.transfer;
     if (plant.motion && !options_.for_reference) item.motion = &*plant.motion;
     scene.items.push_back(std::move(item));
   }
@@ -383,8 +445,7 @@ void LoadedScene::bake(std::size_t index, const BakeParameters& parameters) {
   LoadedPlant& plant = plants_.at(index);
   if (plant.missing) return;
   plant.light = bakedLight(plant.plant, parameters, usualField(settings_.look), bake_seconds_);
-  if (options_.any_look || viewOf(settings_).terms.ambient_source == AmbientSource::kLeafVisibility)
-    addVisibility(plant);
+  addVisibility(plant, plant.light, viewOf(settings_));
   settings_.plants[index].bake = parameters;
   linkForest();
 }

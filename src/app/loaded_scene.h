@@ -67,12 +67,15 @@ class LoadedScene {
   void show(const std::string& step, double share = -1.0) const;
   void loadPlants();
   void lightPlants(const View& look);
-  void addVisibility(LoadedPlant& plant);
+  void addVisibility(const LoadedPlant& plant, std::optional<CrownLight>& light, const View& look);
   void makeGround();
-  void placePlants();
+  void placePlants(const View& look);
   std::vector<Placement> allPlaces();
   std::vector<Placement> scatter(const ScatterSettings& settings,
                                  const std::vector<Placement>& before) const;
+  bool bakesTogether(const View& look) const;
+  bool standsInGroupOnly(std::size_t plant) const;
+  void bakeTogether(const std::vector<Placement>& places, const View& look);
   void makeLevelsOfMany();
   void linkForest();
   void moveInWind(const Wind& wind, double seconds);
@@ -85,7 +88,13 @@ class LoadedScene {
   std::optional<Terrain> terrain_;
   std::vector<GrassSet> grass_;
   std::vector<std::optional<CoverMap>> covers_;
-  std::vector<std::pair<std::size_t, glm::mat4>> singles_;  ///< plants that are drawn whole
+  /// A plant that is drawn whole.
+  struct Single {
+    std::size_t plant = 0;
+    glm::mat4 world{1.0f};
+    std::optional<CrownLight> light;  ///< unset: the plant's
+  };
+  std::vector<Single> singles_;
   Forest forest_;
   float ground_height_ = 0.0f;
   std::optional<Camera> rest_camera_;  ///< of the reference: found before plants moved

@@ -310,6 +310,11 @@ void fieldsOf(Archive& a, SceneSettings& scene) {
                    "give each a name of its own");
   a.setPlants(scene.plants);
   a.list("placements", scene.placements, [&](Placement& place) { fieldsOf(a, place); });
+  a.flag("bake_together", scene.bake_together);
+  if constexpr (Archive::kReads)
+    if (scene.bake_together && scene.placements.size() > kMostTogether)
+      a.refuse("bake_together", fmt::format("is set for {} placements", scene.placements.size()),
+               fmt::format("up to {} are baked in one field", kMostTogether));
   a.list("layouts", scene.layouts, [&](LayoutSettings& layout) { fieldsOf(a, layout); });
   a.list("scatters", scene.scatters, [&](ScatterSettings& scatter) { fieldsOf(a, scatter); });
   a.number("detail", scene.detail, kTiny, 100);

@@ -144,6 +144,9 @@ struct SceneSettings {
   /// Position: x and z, and y above the ground there. Without placements, layouts and scatters each
   /// plant stands once, as its file has it.
   std::vector<Placement> placements;
+  /// Placements are baked in one metaball field, with the parameters of the first one's plant:
+  /// neighbours darken each other, and each is drawn whole, without its tint.
+  bool bake_together = false;
   std::vector<LayoutSettings> layouts;
   std::vector<ScatterSettings> scatters;
   float detail = 1.0f;  ///< Forest::detail
@@ -154,6 +157,9 @@ struct SceneSettings {
   CameraSettings camera;
   LookSettings look;
 };
+
+/// Most placements that are baked together.
+inline constexpr std::size_t kMostTogether = 64;
 
 /// Throws Error in one line that names file, line and key for what is no scene, of a newer version,
 /// has unknown keys or numbers out of range. Files that it names need not be there.

@@ -7,6 +7,7 @@
 #include "verdure/grow.h"
 #include "verdure/levels.h"
 #include "verdure/motion.h"
+#include "verdure/optical_depth.h"
 
 namespace verdure {
 namespace {
@@ -15,6 +16,7 @@ using namespace test;
 
 struct Kind {
   Plant plant;
+  CrownLight light;
   PlantMotion motion;
   PlantLevels levels;
 };
@@ -30,7 +32,8 @@ const Kind& maple() {
     options.leaf_form = LeafForm::kCard;
     made.plant = grow(options);
     made.motion = plantMotion(made.plant, {.texture_width = 512, .texture_height = 256});
-    made.levels = makeLevels(made.plant, nullptr);
+    made.light = bakeOpticalDepth(made.plant).light;
+    made.levels = makeLevels(made.plant, &made.light);
     return made;
   }();
   return kind;
@@ -322,6 +325,35 @@ TEST_F(ForestRender, FarTreesCoverWhatNearOnesDo) {
     EXPECT_NEAR(seen / covered, 1.0, 0.03) << distance << " m, " << view.width << "x" << view.height
                                            << ": " << seen << " of " << covered;
   }
+}
+
+TEST_F(ForestRender, FarTreesAreAsBrightAsNearOnes) {
+  const float height_m = bounds(maple().plant).max.y;
+  for (const char* preset : {"standard", "best"})
+    for (const float azimuth : {0.0f, 1.6f, 3.1f}) {
+      View view = this->view();
+      view.width = view.height = 128;
+      view.hdr = true;
+      view.terms = presetTerms(preset);
+      if (view.terms.ambient_source == AmbientSource::kTransfer)
+        view.terms.ambient_source = AmbientSource::kBaked;
+      view.background = glm::vec3(0.0f);
+      view.shadow_map_size = 1024;
+      turnSun(view, azimuth, 0.7f);
+      view.camera = {{0.0f, 0.8f * height_m, 3.0f * height_m}, {0.0f, 0.5f * height_m, 0.0f}, 0.4f};
+      double light[2] = {};
+      for (const int far : {0, 1}) {
+        Forest forest = forestOf({placeAt({0, 0, 0}, 0.4f, 0)}, true, false);
+        forest.kinds[0].light = &maple().light;
+        forest.detail = far == 1 ? 0.001f : 100.0f;
+        const Frame frame = draw(sceneOf(forest), view);
+        for (int y = 0; y < view.height; ++y)
+          for (int x = 0; x < view.width; ++x) light[far] += double{luminanceAt(frame.hdr, x, y)};
+      }
+      // Light through leaves and their gloss are known on the mean only.
+      EXPECT_NEAR(light[1] / light[0], 1.0, std::string(preset) == "best" ? 0.2 : 0.06)
+          << preset << ", sun at " << azimuth;
+    }
 }
 
 }  // namespace

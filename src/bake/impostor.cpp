@@ -84,7 +84,8 @@ class ImpostorBake {
       open[i] = scene_.occluded(back) ? 0 : 1;
     });
     double seen = 0.0;
-    for (std::size_t i = 0; i < kRays; ++i) seen += ways[i] >= 0.0f ? double{open[i]} : 0.0;
+    for (std::size_t i = 0; i < kRays; ++i)
+      seen += ways[i] >= 0.0f ? static_cast<double>(open[i]) : 0.0;
     float low = 0.0f, high = 20.0f;
     for (int step = 0; step < 40; ++step) {
       const float middle = 0.5f * (low + high);

@@ -118,6 +118,21 @@ float leafWidth(const Plant& plant) {
   return static_cast<float>(std::sqrt(area / static_cast<double>(plant.leaves.size())));
 }
 
+/// Of shared::mirroredByLeaves(): area of the leaves' shadow from above over that from the side.
+float uprightness(const Plant& plant) {
+  glm::dvec3 shadow(0.0);
+  for (const Mesh& mesh : plant.meshes) {
+    if (mesh.kind != PartKind::kFoliage) continue;
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+      const glm::vec3& a = mesh.positions[mesh.indices[i]];
+      shadow += glm::dvec3(glm::abs(glm::cross(mesh.positions[mesh.indices[i + 1]] - a,
+                                               mesh.positions[mesh.indices[i + 2]] - a)));
+    }
+  }
+  const double aside = 0.5 * (shadow.x + shadow.z);
+  return aside > 0.0 ? static_cast<float>(std::clamp(shadow.y / aside, 0.2, 5.0)) : 1.0f;
+}
+
 PackedForestKind packKind(const ForestKind& kind) {
   PackedForestKind packed;
   const Plant& plant = *kind.plant;
@@ -135,6 +150,7 @@ PackedForestKind packKind(const ForestKind& kind) {
     packed.grain_m.push_back(width * level.leaf_growth);
   }
   packed.impostor = packImpostor(kind.levels->impostor, plant.name);
+  packed.impostor.radii.w = uprightness(plant);
   return packed;
 }
 

@@ -43,6 +43,9 @@ void main() {
     ambient = color * k_a * (constant ? frame.open_sky.rgb : meanIrradiance(n));
     if (kTransmission)
       ambient += k_t * k_a * (constant ? frame.open_sky.rgb : meanIrradiance(-n));
+    // Of light from all around, leaves of an index of 1.45 mirror 0.09 on their glossy side.
+    if (kGloss)
+      ambient += 0.045 * shown.light.g * k_a * (constant ? frame.open_sky.rgb : meanIrradiance(n));
   }
   vec3 diffuse = vec3(0.0);
   if (kDiffuse) {
@@ -63,14 +66,9 @@ void main() {
     vec3 outside = position + v * (shown.nearer * scale) + l * out_m;
     visibility *= sunVisibility(outside, l, kind.leaf, false);
   }
-  // Facets that face all ways mirror evenly into all directions (as a sphere does): an eighth of
-  // what falls on leaves whose front is glossy, by Schlick's Fresnel factor.
+  // Leaves are glossy on their fronts: half of what facets mirror that face both ways.
   float mirrored = 0.0;
-  if (kGloss) {
-    float grazing = 1.0 - abs(dot(normalize(l + v), l));
-    mirrored = 0.125 * (0.034 + 0.966 * grazing * grazing * grazing * grazing * grazing) *
-               shown.light.g;
-  }
+  if (kGloss) mirrored = 0.5 * shown.light.g * mirroredByLeaves(kind.radii.w, l, v);
   vec3 lit = illumination(ambient, frame.sun_light.rgb, visibility, diffuse, 1.0, mirrored);
   out_color = vec4(clamp(hazed(lit, position), vec3(0.0), vec3(65000.0)), 1.0);
 }

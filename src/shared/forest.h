@@ -68,7 +68,7 @@ struct ImpostorKind {
   vec4 sphere;  ///< of its pictures: middle and radius, plant's coordinates
   vec4 leaf;    ///< of its leaves, as DrawUniforms
   vec4 crown;   ///< verdure::Impostor's: middle of the ellipsoid, extinction
-  vec4 radii;   ///< of that
+  vec4 radii;   ///< of that; w: of mirroredByLeaves()
   vec4 reach;   ///< as ForestKindData
   uint meshes;
   uint views;  ///< a side
@@ -164,6 +164,23 @@ SHARED_FUNCTION float wayThroughCrown(vec3 from, vec3 toward) {
   float along = dot(from, d);
   float square = along * along + 1.0f - dot(from, from);
   return square > 0.0f ? max(sqrt(square) - along, 0.0f) : 0.0f;
+}
+
+/// What a cloud of small mirrors, of the refractive index of leaves, sends towards `v` of light
+/// from `l` (both unit), in shares of irradiance / pi: their normals are spread as those of an
+/// ellipsoid whose projected area from above is `upright` times that from the side (Heitz, Dupuy,
+/// Crassin, Dachsbacher, "The SGGX Microflake Distribution", SIGGRAPH 2015, (4) and (10), with
+/// Schlick's Fresnel factor).
+SHARED_FUNCTION float mirroredByLeaves(float upright, vec3 l, vec3 v) {
+  vec3 h = l + v;
+  float size = length(h);
+  if (size < 1e-4f) return 0.0f;
+  h = h * (1.0f / size);
+  float grazing = 1.0f - clamp(dot(h, l), 0.0f, 1.0f);
+  float fresnel = 0.034f + 0.966f * grazing * grazing * grazing * grazing * grazing;
+  float spread = h.x * h.x + h.z * h.z + h.y * h.y / (upright * upright);
+  float seen = sqrt(v.x * v.x + v.z * v.z + upright * upright * v.y * v.y);
+  return 0.25f * fresnel / (upright * spread * spread * seen);
 }
 
 /// Irradiance by direction on leaves that face all ways, of which `normal` is the mean: the cosine

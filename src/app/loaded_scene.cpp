@@ -164,8 +164,7 @@ void LoadedScene::lightPlants(const View& look) {
       restoreLeafNormals(plant.plant);
     if (look.wind.speed > 0.0f || any_look) {
       show("motion");
-      plant.motion =
-          motionFor(plant.plant, settings_.plants[i].motion.value_or(MotionSettings{}));
+      plant.motion = motionFor(plant.plant, settings_.plants[i].motion.value_or(MotionSettings{}));
       for (const std::string& note : plant.plant.notes)
         if (note.starts_with("branches: "))
           notes_.push_back(plants_.size() == 1

@@ -24,11 +24,12 @@ namespace verdure::app {
 /// 2009).
 struct MotionSettings {
   struct BranchFlexibility {
-    std::uint32_t branch = 0;   ///< index into MotionTree::branches; those that are not there: none
-    float flexibility = 1.0f;   ///< times its deflections, at least 0
+    std::uint32_t branch = 0;  ///< index into MotionTree::branches; those that are not there: none
+    float flexibility = 1.0f;  ///< times its deflections, at least 0
   };
-  float flexibility = 1.0f;           ///< times all deflections, above 0
-  glm::vec4 level_flexibility{1.0f};  ///< times those of a level's branches, trunk first, at least 0
+  float flexibility = 1.0f;  ///< times all deflections, above 0
+  glm::vec4 level_flexibility{
+      1.0f};  ///< times those of a level's branches, trunk first, at least 0
   glm::vec4 damping_ratio{0.3f, 0.2f, 0.2f, 0.2f};  ///< of a level's, [0.02, 4]
   std::vector<BranchFlexibility> branches;
 };

@@ -345,7 +345,7 @@ class DartBoard {
 std::uint32_t tintOf(const ScatterOptions& options, Random& random) {
   const float hue = random.vary(options.hue_spread);
   const float bright = 1.0f - options.brightness_spread * random.uniform();
-  const glm::vec3 color = hue > 0.0f ? glm::vec3(1.0f, 1.0f - 0.5f * hue, 1.0f - 0.5f * hue)
+  const glm::vec3 color = hue > 0.0f ? glm::vec3(1.0f, 1.0f - 0.35f * hue, 1.0f - 0.6f * hue)
                                      : glm::vec3(1.0f + hue, 1.0f, 1.0f);
   const glm::uvec3 bytes(glm::round(255.0f * bright * color));
   return bytes.r << 16 | bytes.g << 8 | bytes.b;

@@ -71,6 +71,13 @@ float foliageTone(Layer leaves, Layer broad, Layer wide) {
   return leaves.tone + clamp(2.2 * nearer, -0.12, 0.10);
 }
 
+/// Aerial perspective: share of its own colour that something keeps, at a depth. A painter lets it
+/// begin sooner than haze does.
+float nearness(float depth) {
+  float far = 6.0 / (max(depth, 1e-9) * style.picture.w);
+  return 1.0 / (1.0 + far * far);
+}
+
 /// A line along a border, `width` pixels wide.
 float lineAlong(float distance, float width) {
   return insideBorder(0.5 * width - abs(distance), 1.0);

@@ -40,7 +40,9 @@ void main() {
   vec4 c = textureLod(foliage_color, at, 0.0);
   float level = evenTone(foliageTone(broad, broad, wide), toneSlope(foliage_broad, at), kBorders,
                          kLevels);
-  color = mix(color, toned(clearColor(c.rgb / max(c.a, 1e-4)), level), shape * (1.0 - front));
+  vec3 leaf = toned(clearColor(c.rgb / max(c.a, 1e-4)), level);
+  leaf = mix(behind, leaf, mix(0.55, 1.0, nearness(broad.depth)));
+  color = mix(color, leaf, shape * (1.0 - front));
   float lines = lineAlong(distance, 2.0 * unit) * (1.0 - front);
   lines *= 1.0 - 0.8 * smoothstep(0.55, 0.85, wide.cover);
   lines = max(lines, max(barkInk(wood, at, 1.8 * unit), depthInk(max(round(unit), 1.0))) *

@@ -48,7 +48,7 @@ void main() {
   float open = mix(1.0, blurredDepthTest(wood.depth, broad.depth * 1.03, 0.05),
                    min(1.4 * broad.cover, 1.0));
   vec3 brown = bark.rgb / max(bark.a, 1e-4);
-  float wooden = wood.cover * open * grain;
+  float wooden = wood.cover * open * grain * mix(0.3, 1.0, nearness(wood.depth));
   color *= throughPigment(pigment(brown, 0.36, 1.0), wooden * mix(0.8, 1.2, sheet.g));
   float shaded = insideBorder(borderDistance(0.52, wood.tone, 0.04), 3.0);
   color *= throughPigment(pigment(brown * vec3(0.8, 0.9, 1.2), 0.30, 0.9), wooden * shaded);
@@ -56,7 +56,9 @@ void main() {
   if (shape > 0.0) {
     vec4 c = textureLod(foliage_color, at, 0.0);
     vec3 green = c.rgb / max(c.a, 1e-4);
-    float flow = (1.0 + 0.8 * waver) * grain;
+    float near = nearness(broad.depth);
+    float flow = (1.0 + 0.8 * waver) * grain * mix(0.4, 1.0, near);
+    green = mix(luminanceOf(green) * vec3(0.8, 1.0, 1.5), green, mix(0.4, 1.0, near));
     // Warmer here, cooler there: pigments part as they flow.
     green *= vec3(1.0 + 0.5 * waver, 1.0, 1.0 - 0.5 * waver);
     float tone = foliageTone(broad, broad, wide) + 0.06 * waver;

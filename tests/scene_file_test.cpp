@@ -479,6 +479,7 @@ TEST(SceneFile, SaysLineAndKeyOfWhatIsWrong) {
   starts("\"camera\": {\"eye_m\": [0, 0, 0]}",
          "scene.json:4: key 'camera.target_m' is the eye's own place");
   starts("\"wind\": {\"speed_m_s\": 1e300}", "scene.json:4: key 'wind.speed_m_s' is 1e+300");
+  starts("\"wind\": {\n\"seconds\": 1e999 }", "scene.json:5: holds a number that is too large");
   // What is no JSON.
   starts("\"detail\": 1,,", "scene.json:4: syntax error while parsing object key");
   starts("\"detail\": 1,\n\"width\" 5",
@@ -518,6 +519,33 @@ TEST(SceneFile, RefusesOtherFilesAndNewerVersions) {
   const std::string whole = textOf(folder / "whole.json");
   for (std::size_t size = 0; size + 2 < whole.size(); size += 37)
     EXPECT_NE(said(whole.substr(0, size)), "") << size;
+}
+
+TEST(SceneFile, DamagedFilesAreReadOrRefused) {
+  const fs::path folder = scratchFolder("scene_damage");
+  writeScene(unusualScene(folder), folder / "whole.json");
+  const std::string whole = textOf(folder / "whole.json");
+  const std::string pieces[] = {
+      "0",  "-1",   "1e999", "\"\"", "null", "[]", "{}",
+      "[1", "true", "\n",    "\"x",  "}",    ",",  "18446744073709551616"};
+  Random random(11);
+  std::size_t refused = 0;
+  for (int i = 0; i < 1500; ++i) {
+    std::string text = whole;
+    const auto at = random.below(static_cast<std::uint32_t>(text.size()));
+    if (i % 3 == 0)
+      text[at] = static_cast<char>(random.below(256));
+    else
+      text.replace(at, i % 3 == 1 ? 0 : random.below(9), pieces[random.below(std::size(pieces))]);
+    writeFile(folder / "scene.json", text);
+    try {
+      readScene(folder / "scene.json");
+    } catch (const Error& e) {
+      ++refused;
+      EXPECT_NE(std::string(e.what()).find("scene.json"), std::string::npos) << e.what();
+    }
+  }
+  EXPECT_GT(refused, 700u);
 }
 
 TEST(SceneFile, IsWrittenWholeOrNotAtAll) {

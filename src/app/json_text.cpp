@@ -46,6 +46,7 @@ class KeyFinder : public nlohmann::json_sax<Json> {
     Json::sax_parse(begin, end, this);
   }
   int foundLine() const { return found_; }
+  int lastLine() const { return line_; }  ///< that was read
   struct Repeated {
     std::string path;
     int line = 0;
@@ -173,8 +174,9 @@ Json parseJson(std::string_view text, const std::string& where) {
     throw Error(fmt::format("{}:{}", where, line),
                 colon == std::string::npos ? "is no JSON" : said.substr(colon + 2),
                 "mend it, or save the scene again");
-  } catch (const Json::exception&) {
-    throw Error(where, "is no JSON that can be read", "save the scene again");
+  } catch (const Json::exception&) {  // a number that no double holds
+    throw Error(fmt::format("{}:{}", where, KeyFinder(text, "").lastLine()),
+                "holds a number that is too large", "mend it");
   }
   const KeyFinder finder(text, "");
   if (const auto& repeated = finder.repeated())

@@ -10,6 +10,7 @@
 #include "render/paper.h"
 #include "render_fixture.h"
 #include "verdure/compare.h"
+#include "verdure/levels.h"
 #include "verdure/terrain.h"
 
 namespace verdure {
@@ -438,6 +439,47 @@ TEST_F(Styles, WoodSinksIntoFoliageInsteadOfBeingCutOff) {
     between += contrast[i] > 0.1f * contrast.back() && contrast[i] < 0.9f * contrast.back() ? 1 : 0;
   }
   EXPECT_GE(between, 2);
+}
+
+TEST_F(Styles, ForestsLookAsTheirTreesDo) {
+  const Tree& t = tree();
+  Forest forest;
+  forest.kinds = {{&t.plant, &t.light}};
+  forest.places = {Placement{}};
+  Scene scene;
+  scene.ground = false;
+  scene.forest = &forest;
+  PlantLevels levels;
+  levels.impostor = bakeImpostor(t.plant, &t.light, {.views = 4, .texels = 64, .samples = 2});
+  for (const Style style : kDrawn) {
+    SCOPED_TRACE(static_cast<int>(style));
+    View view = treeView(style);
+    view.shadow_cascades = 1;
+    const Image alone = renderer().render(view).image;
+    renderer().setScene(scene);
+    EXPECT_LT(meanFlip(alone, renderer().render(view).image), 0.03);
+    // From afar a card stands for it, of about the same colours in the same place.
+    view = styledView(160, 160, style);
+    view.camera = treeView(style).camera;
+    view.camera.eye += 60.0f * (view.camera.eye - view.camera.target);
+    view.camera.vertical_fov /= 61.0f;
+    view.background = glm::vec3(1.0f);
+    renderer().setScene(t.scene(false));
+    const Image mesh = renderer().render(view).image;
+    forest.kinds[0].levels = &levels;
+    renderer().setScene(scene);
+    const Image card = renderer().render(view).image;
+    forest.kinds[0].levels = nullptr;
+    EXPECT_NE(card.rgba, mesh.rgba);
+    double of_mesh = 0.0, of_card = 0.0;
+    for (int y = 0; y < 160; ++y)
+      for (int x = 0; x < 160; ++x) {
+        of_mesh += 1.0 - double{valueAt(mesh, x, y)};
+        of_card += 1.0 - double{valueAt(card, x, y)};
+      }
+    EXPECT_GT(of_card, 0.5 * of_mesh);
+    EXPECT_LT(of_card, 1.6 * of_mesh);
+  }
 }
 
 /// The camera and its target moved together, so that the middle of the scene moves by so many

@@ -48,6 +48,9 @@ GuiContext::GuiContext(const Window& window) {
   style.FrameRounding = 2.0f;
   style.WindowBorderSize = 0.0f;
   style.Colors[ImGuiCol_WindowBg].w = 1.0f;
+  style.Colors[ImGuiCol_PopupBg].w = 1.0f;
+  style.Colors[ImGuiCol_ModalWindowDimBg] = {0.0f, 0.0f, 0.0f, 0.35f};
+  style.Colors[ImGuiCol_PlotHistogram] = style.Colors[ImGuiCol_Header];
   const float scale = window.scale();
   style.ScaleAllSizes(scale);
   ImFontConfig font;

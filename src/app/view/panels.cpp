@@ -111,11 +111,13 @@ Change bakePanel(ViewSession& session, const PanelState& state) {
     const float rho = last != nullptr && last->rho > 0.0f ? last->rho : 0.3f;
     const float tau = last != nullptr && last->rho > 0.0f ? last->tau : 1.0f;
     const float most = last != nullptr && last->rho > 0.0f ? last->most_tau : 10.0f;
+    const float d_min = last != nullptr && last->d_min > 0.0f ? last->d_min : 1.0f;
     edited |= optionalSlider("rho, m", options.rho, rho, 0.01f, 5.0f, "%.3f", true);
     edited |= optionalSlider("tau", options.tau, tau, 0.001f, std::max(most, 0.01f), "%.3f", true);
     edited |= slider("share of leaves", options.fraction, 0.01f, 1.0f, "%.2f", true);
     edited |= slider("cells", options.grid, 16, 384);
-    edited |= optionalSlider("d_min", options.d_min, tau, 0.01f, 100.0f, "%.3g", true);
+    edited |=
+        optionalSlider("d_min", options.d_min, d_min, 0.01f, std::max(most, d_min), "%.3g", true);
     edited |= slider("k_min", options.k_min, 0.0f, 1.0f, "%.2f");
     edited |= slider("exponent n", options.exponent, 0.1f, 8.0f, "%.2f", true);
     edited |= choice("norm", shown.norm, {"1", "2", "4", "inf"});
@@ -146,7 +148,8 @@ Change bakePanel(ViewSession& session, const PanelState& state) {
   if (session.shown() != nullptr && state.plant < session.shown()->loaded().plants().size())
     if (const PlantBake* bake = session.shown()->bake(state.plant)) {
       ImGui::SameLine();
-      ImGui::TextDisabled("%.0f ms", bake->seconds * 1e3);
+      ImGui::TextDisabled("first seen after %.0f ms, all in %.0f", session.bakeLatency() * 1e3,
+                          bake->seconds * 1e3);
       ImGui::PushTextWrapPos();
       ImGui::TextDisabled("%s", bake->report.c_str());
       ImGui::PopTextWrapPos();

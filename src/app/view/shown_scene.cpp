@@ -82,6 +82,7 @@ PlantBake bakePlant(const Plant& plant, const CrownLight* before, const BakePara
     const DensityReport& r = bake.report;
     made.rho = r.rho;
     made.tau = r.tau;
+    made.d_min = r.d_min;
     made.most_tau = r.field_max_at_generators;
     made.report = fmt::format(
         "rho {:.3g} m, tau {:.3g} (largest sum {:.3g}), d_min {:.3g}; {} of {} leaves; surface of "

@@ -17,7 +17,7 @@ struct PlantBake {
   CrownLight light;
   Surface surface;  ///< of the metaball field, else empty
   std::string report;
-  float rho = 0.0f, tau = 0.0f, most_tau = 0.0f;  ///< of the metaball field, else 0
+  float rho = 0.0f, tau = 0.0f, most_tau = 0.0f, d_min = 0.0f;  ///< of the metaball field, else 0
   double seconds = 0.0;
 };
 

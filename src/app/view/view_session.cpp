@@ -50,7 +50,7 @@ std::string fileName(const std::filesystem::path& path) {
 }  // namespace
 
 ViewSession::ViewSession(Screen& screen, const std::function<void()>& wake)
-    : screen_(&screen), tracer_(wake), job_(wake) {
+    : screen_(&screen), tracer_(wake), saves_(wake), job_(wake) {
   rebuildView();
 }
 
@@ -65,6 +65,7 @@ void ViewSession::changed(Change change, std::size_t plant) {
   if (change == Change::kBake) stale_bakes_.insert(plant);
   if (change == Change::kMotion) stale_motions_.insert(plant);
   if (change >= Change::kMotion) renew();
+  if (change == Change::kBake && !bake_asked_) bake_asked_.emplace();
   rebuildView();
 }
 
@@ -225,6 +226,8 @@ std::shared_ptr<const ShownScene> ViewSession::renewBake(
       return fail(e);
     }
     shown_ = next;
+    if (bake_asked_) bake_latency_ = bake_asked_->seconds();
+    bake_asked_.reset();
     if (!preview) stale_bakes_.erase(p);
     dirty_[0] = dirty_[1] = true;
   });
@@ -270,12 +273,13 @@ void ViewSession::saveScene(const std::filesystem::path& path) {
 
 void ViewSession::savePlant(std::size_t plant, const std::filesystem::path& path) {
   if (!shown_ || plant >= shown_->loaded().plants().size()) return;
-  job_.start("saving", [shown = shown_, plant, path](BackgroundJob::Control& control) {
+  saves_.start("saving", [this, shown = shown_, plant, path](BackgroundJob::Control& control) {
     control.show(fileName(path), -1.0);
     const LoadedPlant& loaded = shown->loaded().plants()[plant];
     const CrownLight* light = loaded.light ? &*loaded.light : nullptr;
     if (const PlantBake* bake = shown->bake(plant)) light = &bake->light;
     verdure::savePlant(loaded.plant, light, path);
+    control.handOver([this, path] { message = "saved " + path.string(); });
   });
 }
 
@@ -286,8 +290,8 @@ void ViewSession::saveScreenshot(std::filesystem::path path) {
       if (!std::filesystem::exists(next)) path = next;
     }
     View view = view_;
-    const glm::ivec2 size = drawn_size_[0];
-    if (size.x > 0 && !coarse_) std::tie(view.width, view.height) = std::tie(size.x, size.y);
+    const glm::ivec2 size = pictureSize(area_);
+    if (area_.x > 0) std::tie(view.width, view.height) = std::tie(size.x, size.y);
     writePng(screen_->read(view, static_cast<Inspection>(inspected)).image, path);
     message = "saved " + path.string();
   } catch (const std::exception& e) {
@@ -358,7 +362,9 @@ float ViewSession::reach() const {
 
 void ViewSession::poll() {
   job_.poll();
-  for (std::optional<std::string> error : {job_.takeError(), tracer_.takeError()})
+  saves_.poll();
+  for (const std::optional<std::string>& error :
+       {job_.takeError(), saves_.takeError(), tracer_.takeError()})
     if (error) message = *error;
   if (beside != Beside::kTracer) return;
   if (const std::optional<Image> picture = tracer_.takePicture()) {
@@ -379,10 +385,15 @@ void ViewSession::advance(double seconds) {
   since_change_.lap();
 }
 
+glm::ivec2 ViewSession::pictureSize(const glm::ivec2& area) const {
+  const int columns = beside == Beside::kNothing ? 1 : 2;
+  return glm::max(glm::ivec2(area.x / columns, area.y), glm::ivec2(1));
+}
+
 void ViewSession::draw(const glm::ivec2& area) {
   if (clip_) return drawClipFrame();
   const int columns = beside == Beside::kNothing ? 1 : 2;
-  const glm::ivec2 full = glm::max(glm::ivec2(area.x / columns, area.y), glm::ivec2(1));
+  const glm::ivec2 full = pictureSize(area);
   if (area != area_) since_change_.lap();
   area_ = area;
   const bool moves = since_change_.seconds() < kRest_s;
@@ -438,14 +449,14 @@ double ViewSession::rest() const {
 }
 
 bool ViewSession::settled() const {
-  return !job_.busy() && !clip_ && !coarse_ && !dirty_[0] && stale_bakes_.empty() &&
-         stale_motions_.empty();
+  return !job_.busy() && !saves_.busy() && !clip_ && !coarse_ && !dirty_[0];
 }
 
 std::optional<BackgroundJob::Status> ViewSession::status() const {
   if (clip_)
     return BackgroundJob::Status{"clip", fmt::format("frame {} of {}", clip_->next, clip_->frames),
                                  static_cast<double>(clip_->next) / clip_->frames};
+  if (auto status = saves_.status()) return status;
   if (auto status = job_.status()) return status;
   return beside == Beside::kTracer ? tracer_.status() : std::nullopt;
 }

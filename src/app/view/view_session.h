@@ -81,6 +81,8 @@ class ViewSession {
   const View& view() const { return view_; }
   const Frame& frame(int picture) const { return frames_[picture]; }  ///< without image
   double drawSeconds() const { return draw_seconds_; }                ///< of the last picture
+  /// Seconds from the last change of a bake's parameter until a bake of it was there to be drawn.
+  double bakeLatency() const { return bake_latency_; }
   int tracedSamples() const { return tracer_.samples(); }
   const std::string& name() const { return name_; }
   const std::filesystem::path& scenePath() const { return scene_path_; }
@@ -108,6 +110,7 @@ class ViewSession {
   void rebuildView();
   View viewWith(const LookSettings& look) const;
   void drawClipFrame();
+  glm::ivec2 pictureSize(const glm::ivec2& area) const;  ///< of each picture in full
   void fail(const std::exception& problem);
 
   Screen* screen_;
@@ -116,8 +119,10 @@ class ViewSession {
   bool modified_ = false;
 
   std::shared_ptr<const ShownScene> shown_;
-  int scene_number_ = 0;                               ///< of what was loaded
-  Camera home_;                                        ///< sees all of it
+  int scene_number_ = 0;             ///< of what was loaded
+  Camera home_;                      ///< sees all of it
+  std::optional<Timer> bake_asked_;  ///< since a parameter changed, until a bake of it is shown
+  double bake_latency_ = 0.0;
   std::set<std::size_t> stale_bakes_, stale_motions_;  ///< plants
 
   View view_;
@@ -135,7 +140,8 @@ class ViewSession {
   std::optional<Clip> clip_;
 
   TraceView tracer_;
-  BackgroundJob job_;  ///< last: its thread uses the others
+  BackgroundJob saves_;  ///< beside it, so that no newer request takes its place
+  BackgroundJob job_;    ///< last: its thread uses the others
 };
 
 }  // namespace verdure::app

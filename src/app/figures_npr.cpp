@@ -109,6 +109,9 @@ void runNprFigures(const FiguresCommand& command) {
   FigureSet figures(
       command, "Foliage in drawn styles",
       "Figures 7 and 8 of Luft, Balzer and Deussen (2007), from verdure's plants on ");
+  // Tones are even: finer shadows would not be seen.
+  figures.view().shadow_map_size = 1024;
+  figures.view().shadow_cascades = 1;
   Progress progress("figures npr");
   progress.show("figure 7");
   const LitPlant tree = growLit(command.species, 4);

@@ -39,7 +39,9 @@ void main() {
   float washed = glaze(rim * unit, 2.5, 0.35, unit);
   vec3 sky = linearBackdrop(at);
   float wet = mix(0.35, 1.35, sheet.g);
-  vec3 wash = pigment(sky, mix(0.38, 0.80, sqrt(luminanceOf(sky))), 1.15);
+  // White is the paper's own.
+  float light = luminanceOf(sky);
+  vec3 wash = pigment(sky, mix(0.38, 0.80, sqrt(light)) + 0.2 * pow(light, 8.0), 1.15);
   // Painted around the plants rather than under them.
   color *= throughPigment(wash, washed * wet * grain * (1.0 - 0.85 * shape));
 
@@ -49,9 +51,11 @@ void main() {
                    min(1.4 * broad.cover, 1.0));
   vec3 brown = bark.rgb / max(bark.a, 1e-4);
   float wooden = wood.cover * open * grain * mix(0.3, 1.0, nearness(wood.depth));
-  color *= throughPigment(pigment(brown, 0.36, 1.0), wooden * mix(0.8, 1.2, sheet.g));
+  float pale = smoothstep(0.12, 0.5, luminanceOf(brown));
+  color *= throughPigment(pigment(brown, mix(0.36, 0.85, pale), 1.0),
+                          wooden * mix(0.8, 1.2, sheet.g));
   float shaded = insideBorder(borderDistance(0.52, wood.tone, 0.04), 3.0);
-  color *= throughPigment(pigment(brown * vec3(0.8, 0.9, 1.2), 0.30, 0.9), wooden * shaded);
+  color *= throughPigment(pigment(brown * vec3(0.8, 0.9, 1.2), mix(0.30, 0.62, pale), 0.9), wooden * shaded);
 
   if (shape > 0.0) {
     vec4 c = textureLod(foliage_color, at, 0.0);

@@ -32,5 +32,6 @@ void main() {
       visible = mix(visible, sunVisibility(surface, v, kind.leaf, false), mapped);
   }
   vec3 tint = mix(vec3(1.0), tintOf(seat), shown.light.g);
-  writeLayer(surface, n, kAmbientSource == kBaked ? shown.light.r : 1.0, tint * shown.color, visible);
+  writeLayer(surface, n, kAmbientSource == kBaked ? shown.light.r : 1.0, tint * shown.color,
+             visible);
 }

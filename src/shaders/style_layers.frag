@@ -31,7 +31,8 @@ void main() {
   if (kFlipNormal && !gl_FrontFacing) n = -n;
   vec3 face = cross(p_x, p_y), visible = vec3(1.0);
   if (kShadow && dot(n, frame.to_sun.xyz) > 0.0)
-    visible = sunVisibility(position, dot(face, face) > 0.0 ? normalize(face) : n, draw.leaf, false);
+    visible = sunVisibility(position, dot(face, face) > 0.0 ? normalize(face) : n, draw.leaf,
+                            false);
   vec3 tint = kForest && kFoliage ? tintOf(seat) : vec3(1.0);
   writeLayer(position, n, kAmbientSource == kBaked ? in_normal.w : 1.0,
              texel.rgb * draw.color.rgb * tint, visible);

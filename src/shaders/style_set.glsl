@@ -54,8 +54,10 @@ float borderOf(sampler2D layer, vec2 at, float threshold, float least_slope) {
 /// Change per pixel of a layer's lightness.
 float toneSlope(sampler2D layer, vec2 at) {
   vec2 step = 1.0 / style.picture.xy;
-  float x = layerAt(layer, at + vec2(step.x, 0.0)).tone - layerAt(layer, at - vec2(step.x, 0.0)).tone;
-  float y = layerAt(layer, at + vec2(0.0, step.y)).tone - layerAt(layer, at - vec2(0.0, step.y)).tone;
+  float x = layerAt(layer, at + vec2(step.x, 0.0)).tone -
+            layerAt(layer, at - vec2(step.x, 0.0)).tone;
+  float y = layerAt(layer, at + vec2(0.0, step.y)).tone -
+            layerAt(layer, at - vec2(0.0, step.y)).tone;
   return 0.5 * length(vec2(x, y));
 }
 
@@ -65,7 +67,8 @@ float foliageThreshold(Layer wide) {
 }
 
 /// Lightness of foliage, darker where nearer foliage surrounds it: so clumps stand out from those
-/// behind (Luft, Colditz and Deussen, "Image Enhancement by Unsharp Masking the Depth Buffer", 2006).
+/// behind (Luft, Colditz and Deussen, "Image Enhancement by Unsharp Masking the Depth Buffer",
+/// 2006).
 float foliageTone(Layer leaves, Layer broad, Layer wide) {
   float nearer = (broad.depth - wide.depth) / max(wide.depth, 1e-9);
   return leaves.tone + clamp(2.2 * nearer, -0.12, 0.10);
@@ -113,9 +116,9 @@ float normalInk(float unit) {
   return smoothstep(0.06, 0.17, change) * smoothstep(0.005, 0.05, change - beside);
 }
 
-/// Profiles and creases of the depths that are seen, of wood before wood and of ground before ground: leaves lie
-/// at all depths of a crown, and borders of layers have lines of their own (lineAlong()). Far off
-/// they fade, and with them the horizon.
+/// Profiles and creases of the depths that are seen, of wood before wood and of ground before
+/// ground: leaves lie at all depths of a crown, and borders of layers have lines of their own
+/// (lineAlong()). Far off they fade, and with them the horizon.
 float depthInk(float unit) {
   vec2 at = placeInPicture(), step = unit / style.picture.xy;
   float v[9];
@@ -148,7 +151,8 @@ void writeLinear(vec3 linear) {
   vec3 level;
   for (int i = 0; i < 3; ++i)
     level[i] = ditheredLevel(srgbFromLinear(clamp(linear[i], 0.0, 1.0)),
-                             ditherThreshold(floor(gl_FragCoord.x), floor(gl_FragCoord.y), float(i)));
+                             ditherThreshold(floor(gl_FragCoord.x), floor(gl_FragCoord.y),
+                                             float(i)));
   out_color = vec4(level / 255.0, 1.0);
 }
 

@@ -55,7 +55,8 @@ void main() {
   color *= throughPigment(pigment(brown, mix(0.36, 0.85, pale), 1.0),
                           wooden * mix(0.8, 1.2, sheet.g));
   float shaded = insideBorder(borderDistance(0.52, wood.tone, 0.04), 3.0);
-  color *= throughPigment(pigment(brown * vec3(0.8, 0.9, 1.2), mix(0.30, 0.62, pale), 0.9), wooden * shaded);
+  color *= throughPigment(pigment(brown * vec3(0.8, 0.9, 1.2), mix(0.30, 0.62, pale), 0.9),
+                          wooden * shaded);
 
   if (shape > 0.0) {
     vec4 c = textureLod(foliage_color, at, 0.0);

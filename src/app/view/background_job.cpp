@@ -15,7 +15,7 @@ void BackgroundJob::Control::show(const std::string& step, double share, bool gi
     job_->status_->share = share;
     // Frames that only show progress are not to take the time of what makes it.
     const auto now = std::chrono::steady_clock::now();
-    wake = job_->wake_ && now - job_->woken_ > std::chrono::milliseconds(60);
+    wake = job_->wake_ && now - job_->woken_ > std::chrono::milliseconds(150);
     if (wake) job_->woken_ = now;
   }
   if (wake) job_->wake_();

@@ -50,10 +50,10 @@ void FileDialog::list(const std::filesystem::path& folder) {
 
 void FileDialog::draw() {
   if (opening_) ImGui::OpenPopup(title_.c_str());
+  if (title_.empty() || !ImGui::IsPopupOpen(title_.c_str())) return;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowSize({std::min(560.0f, size.x), std::min(440.0f, size.y)}, ImGuiCond_Always);
-  if (title_.empty() || !ImGui::BeginPopupModal(title_.c_str(), nullptr, ImGuiWindowFlags_NoResize))
-    return;
+  if (!ImGui::BeginPopupModal(title_.c_str(), nullptr, ImGuiWindowFlags_NoResize)) return;
   const std::filesystem::path path(path_);
   std::error_code unknown;
   const bool is_folder = path_.empty() || std::filesystem::is_directory(path, unknown);

@@ -62,11 +62,11 @@ void ViewSession::changed(Change change, std::size_t plant) {
   if (change == Change::kNothing) return;
   modified_ = true;
   if (change == Change::kScene) return load(false);
-  if (change == Change::kBake) stale_bakes_.insert(plant);
-  if (change == Change::kMotion) stale_motions_.insert(plant);
-  if (change >= Change::kMotion) renew();
+  if (change < Change::kMotion) return rebuildView();
+  // Until the result is there the picture stays as it is, and the processor is the job's.
+  (change == Change::kBake ? stale_bakes_ : stale_motions_).insert(plant);
   if (change == Change::kBake && !bake_asked_) bake_asked_.emplace();
-  rebuildView();
+  renew();
 }
 
 View ViewSession::viewWith(const LookSettings& look) const {
@@ -229,6 +229,7 @@ std::shared_ptr<const ShownScene> ViewSession::renewBake(
     if (bake_asked_) bake_latency_ = bake_asked_->seconds();
     bake_asked_.reset();
     if (!preview) stale_bakes_.erase(p);
+    if (preview) since_change_.lap();  // to be seen soon rather than sharp
     dirty_[0] = dirty_[1] = true;
   });
   return next;
@@ -445,7 +446,7 @@ double ViewSession::rest() const {
   if (playing || clip_ || dirty_[0]) return 0.0;
   if (coarse_ || (beside == Beside::kTracer && tracing_stale_))
     return std::max(kRest_s - since_change_.seconds(), 1e-3);
-  return status() ? 0.1 : 1.0;
+  return status() ? 0.25 : 1.0;
 }
 
 bool ViewSession::settled() const {

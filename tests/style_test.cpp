@@ -414,7 +414,8 @@ TEST_F(Styles, WoodSinksIntoFoliageInsteadOfBeingCutOff) {
   wall.meshes[0] = {};
   wall.meshes[0].kind = PartKind::kFoliage;
   addQuad(wall.meshes[0], {0, -2, 0}, {4, 0, 0}, {0, 4, 0});
-  const Plant post = standingTube(0.3f, -3.0f, 3.0f);
+  Plant post = standingTube(0.3f, -3.0f, 3.0f);
+  post.materials[0].base_color = {0.12f, 0.08f, 0.05f, 1.0f};
   View view = styledView(120, 120, Style::kWatercolor);
   view.camera = {{0, 0, 10}, {0, 0, 0}, 0.6f};
   view.background = glm::vec3(1.0f);
@@ -461,8 +462,8 @@ TEST_F(Styles, ForestsLookAsTheirTreesDo) {
     // From afar a card stands for it, of about the same colours in the same place.
     view = styledView(160, 160, style);
     view.camera = treeView(style).camera;
-    view.camera.eye += 60.0f * (view.camera.eye - view.camera.target);
-    view.camera.vertical_fov /= 61.0f;
+    view.camera.eye += 19.0f * (view.camera.eye - view.camera.target);
+    view.camera.vertical_fov /= 5.0f;
     view.background = glm::vec3(1.0f);
     renderer().setScene(t.scene(false));
     const Image mesh = renderer().render(view).image;
@@ -474,10 +475,10 @@ TEST_F(Styles, ForestsLookAsTheirTreesDo) {
     double of_mesh = 0.0, of_card = 0.0;
     for (int y = 0; y < 160; ++y)
       for (int x = 0; x < 160; ++x) {
-        of_mesh += 1.0 - double{valueAt(mesh, x, y)};
-        of_card += 1.0 - double{valueAt(card, x, y)};
+        of_mesh += std::max(0.9 - double{valueAt(mesh, x, y)}, 0.0);
+        of_card += std::max(0.9 - double{valueAt(card, x, y)}, 0.0);
       }
-    EXPECT_GT(of_card, 0.5 * of_mesh);
+    EXPECT_GT(of_card, 0.4 * of_mesh);
     EXPECT_LT(of_card, 1.6 * of_mesh);
   }
 }

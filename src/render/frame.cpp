@@ -389,7 +389,8 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view, const gpu::Texture* t
   if (inspection_ != Inspection::kNothing)
     inspect_pass_.prepare(*device_, layout_, scene, view.terms, inspection_);
   if (scene.forest() != nullptr) {
-    scene.forest()->look(view, cascades);
+    scene.forest()->look(view, cascades,
+                         scene.terrain() != nullptr ? &scene.terrain()->terrain() : nullptr);
     impostor_pass_.prepare(view.terms, kind, depth_maps);
   }
   if (!photo && !style_pass_)

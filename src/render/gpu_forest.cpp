@@ -8,6 +8,8 @@
 
 #include "motion/motion_texture.h"
 #include "scene/camera.h"
+#include "scene/terrain_horizon.h"
+#include "shared/horizon.h"
 #include "verdure/error.h"
 
 namespace verdure {
@@ -54,7 +56,7 @@ ForestLayouts::ForestLayouts(const gpu::Device& device)
               vk::DescriptorType::eStorageBuffer, vk::DescriptorType::eStorageBuffer,
               vk::DescriptorType::eStorageBuffer, vk::DescriptorType::eStorageBuffer,
               vk::DescriptorType::eStorageBuffer, vk::DescriptorType::eStorageBuffer,
-              vk::DescriptorType::eStorageBuffer},
+              vk::DescriptorType::eStorageBuffer, vk::DescriptorType::eStorageBuffer},
              vk::ShaderStageFlagBits::eCompute),
       impostor(
           device,
@@ -109,6 +111,8 @@ GpuForest::GpuForest(const gpu::Device& device, gpu::Upload& upload, PackedFores
   ranges_ =
       make(std::size_t{kViews} * packed_.classes * sizeof(glm::uvec2), gpu::MemoryUse::kFromGpu);
   slots_ = make(std::size_t{places} * 4);
+  horizon_ = make(std::size_t{shared::kHorizonTurns} * shared::kHorizonRings * sizeof(float),
+                  gpu::MemoryUse::kToGpu);
 
   // Trees whose kind has no levels are meshes anywhere.
   std::uint32_t always = 0;
@@ -135,8 +139,9 @@ GpuForest::GpuForest(const gpu::Device& device, gpu::Upload& upload, PackedFores
 
   set_.emplace(device, layouts.choice);
   std::uint32_t binding = 0;
-  for (const gpu::Buffer* buffer : {&places_, &clusters_, &kind_buffer_, &views_, &counts_,
-                                    &ranges_, &commands_, &draw_classes_, &seats_, &fars_, &slots_})
+  for (const gpu::Buffer* buffer :
+       {&places_, &clusters_, &kind_buffer_, &views_, &counts_, &ranges_, &commands_,
+        &draw_classes_, &seats_, &fars_, &slots_, &horizon_})
     set_->setBuffer(binding++, *buffer);
 
   low_ = glm::vec3(std::numeric_limits<float>::max());
@@ -221,8 +226,13 @@ void GpuForest::setWind(const std::optional<Wind>& wind) {
   }
 }
 
-void GpuForest::look(const View& view, std::span<const Cascade> cascades) {
+void GpuForest::look(const View& view, std::span<const Cascade> cascades, const Terrain* terrain) {
   const glm::vec3& eye = view.camera.eye;
+  if (terrain != nullptr && horizon_eye_ != eye) {
+    const std::vector<float> horizon = terrainHorizon(*terrain, eye);
+    std::memcpy(horizon_.memory.mapped(), horizon.data(), horizon.size() * sizeof(float));
+    horizon_eye_ = eye;
+  }
   const float pixels_per_m =
       static_cast<float>(view.height) / (2.0f * std::tan(0.5f * view.camera.vertical_fov));
   for (std::size_t k = 0; k < kind_data_.size(); ++k) {
@@ -261,6 +271,7 @@ void GpuForest::look(const View& view, std::span<const Cascade> cascades) {
     shared::ForestView& data = view_data_[v];
     data.eye = glm::vec4(eye, meshes);
     data.farthest = std::numeric_limits<float>::max();
+    data.horizon = v == kPicture && terrain != nullptr ? 1 : 0;
     for (glm::vec4& plane : data.planes) plane = all;
     if (v == kPicture) {
       const glm::vec4 w = rowOf(clip, 3);

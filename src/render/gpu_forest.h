@@ -37,7 +37,8 @@ class GpuForest {
                  std::span<const gpu::Buffer> texels);
 
   /// Of the frame that comes: levels by the camera and the picture's size, places by the views.
-  void look(const View& view, std::span<const Cascade> cascades);
+  /// `terrain`: whose hills hide trees, or null.
+  void look(const View& view, std::span<const Cascade> cascades, const Terrain* terrain);
   /// In this wind or weaker ones; none: at rest.
   void setWind(const std::optional<Wind>& wind);
   /// What casts shadows around `eye`, at rest or in the wind that was set.
@@ -74,11 +75,12 @@ class GpuForest {
   std::vector<shared::ImpostorKind> impostor_data_;
   std::vector<Kind> kinds_;
   gpu::Buffer places_, clusters_, kind_buffer_, views_, counts_, ranges_, commands_, draw_classes_,
-      seats_, fars_, slots_, impostors_;
+      seats_, fars_, slots_, impostors_, horizon_;
   std::optional<gpu::DescriptorSet> set_;
   vk::raii::Sampler sampler_ = nullptr;
   std::array<shared::ForestView, kViews> view_data_{};
-  std::uint32_t view_count_ = 1;  ///< picture and cascades of this frame
+  std::optional<glm::vec3> horizon_eye_;  ///< that horizon_ is for
+  std::uint32_t view_count_ = 1;          ///< picture and cascades of this frame
   std::optional<Wind> wind_;
   bool moves_ = false;
   glm::vec3 low_{0.0f}, high_{0.0f};  ///< of all places

@@ -23,6 +23,7 @@ struct PackedTerrain {
 class GpuTerrain {
  public:
   GpuTerrain(const gpu::Device& device, PackedTerrain packed, const gpu::SetLayout& layout);
+  const Terrain& terrain() const { return terrain_; }
 
  private:
   friend class GrassPass;

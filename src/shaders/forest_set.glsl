@@ -1,5 +1,6 @@
 // What the passes share that choose a forest's trees; one of three steps each.
 #include "shared/forest.h"
+#include "shared/horizon.h"
 layout(local_size_x = 128) in;  // kForestGroup
 layout(set = 0, binding = 0, std430) readonly buffer Places { ForestPlace places[]; };
 layout(set = 0, binding = 1, std430) readonly buffer Clusters { vec4 clusters[]; };  // spheres
@@ -16,6 +17,7 @@ struct Seat {
 layout(set = 0, binding = 8, std430) buffer Seats { Seat seats[]; };
 layout(set = 0, binding = 9, std430) buffer Fars { uint fars[]; };    // places of impostors
 layout(set = 0, binding = 10, std430) buffer Slots { uint slots[]; };  // of each place: its motion
+layout(set = 0, binding = 11, std430) readonly buffer Horizon { float horizon[]; };
 layout(push_constant, std430) uniform JobBlock {
   uint first_view;
   uint place_count;
@@ -38,6 +40,17 @@ bool seesCluster(ForestView view) {
   return seesSphere(view, sphere.xyz, sphere.w);
 }
 
+/// By the ground.
+bool isHidden(vec3 from_eye, float radius) {
+  HorizonLookup lookup = horizonLookup(from_eye, radius);
+  if (lookup.count == 0u || lookup.count > 64u) return false;
+  for (uint i = 0u; i < lookup.count; ++i) {
+    uint turn = (lookup.first + i) % kHorizonTurns;
+    if (horizon[turn * kHorizonRings + lookup.ring] <= lookup.tangent) return false;
+  }
+  return true;
+}
+
 Chosen chosenIn(ForestView view, uint index) {
   Chosen chosen = Chosen(kForestNone, kForestNone, 1.0);
   if (index >= job.place_count) return chosen;
@@ -45,6 +58,8 @@ Chosen chosenIn(ForestView view, uint index) {
   ForestKindData kind = kinds[place.kind];
   vec3 middle = forestMiddle(place, kind.sphere);
   if (!seesSphere(view, middle, kind.sphere.w * place.scale)) return chosen;
+  if (view.horizon != 0u && isHidden(middle - view.eye.xyz, kind.sphere.w * place.scale))
+    return chosen;
   float size = 1.0 / place.scale;
   ForestLevel choice = forestLevel(kind.reach, kind.meshes, kind.has_impostor,
                                    distance(middle, view.eye.xyz) * size, view.eye.w * size);

@@ -55,7 +55,7 @@ struct ForestView {
   uint first_far;   ///< of its impostors
   uint fars;
   uint motion;  ///< 1: all trees around that may be drawn as meshes, for their motion
-  uint padding;
+  uint horizon;    ///< 1: what hills hide is left out
 };
 SHARED_SIZE(ForestView, 144);
 

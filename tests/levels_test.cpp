@@ -24,6 +24,7 @@ const Plant& smallTree() {
     GrowOptions options;
     options.species = "japanese-maple";
     options.leaf_form = LeafForm::kCard;
+    options.set = {{"Levels", "3"}};
     options.texture_size = 128;
     Plant grown = grow(options);
     findLeaves(grown);
@@ -145,7 +146,7 @@ TEST(Levels, CoverWhatThePlantDoes) {
   options.impostor = {.views = 2, .texels = 16, .samples = 1};
   const PlantLevels levels = makeLevels(plant, nullptr, options);
   const double covered = meanCoverage(plant);
-  ASSERT_EQ(levels.meshes.size(), 2u);
+  ASSERT_EQ(levels.meshes.size(), options.leaf_shares.size());
   for (const PlantLevel& level : levels.meshes) {
     Plant coarse = plant;
     coarse.meshes = level.meshes;

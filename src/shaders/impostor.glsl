@@ -40,7 +40,10 @@ Shown shownThere(ImpostorKind kind) {
     vec2 uv_x = dFdx(flat_at), uv_y = dFdy(flat_at);
     float covered = textureGrad(impostor_color, vec3(flat_at, layer), uv_x, uv_y).a;
     float depth = textureGrad(impostor_normal, vec3(flat_at, layer), uv_x, uv_y).a;
-    float nearer = covered > 0.02 ? (2.0 * depth / covered - 1.0) * kind.sphere.w : 0.0;
+    // Where a texel is smaller than a pixel it need not move, and what lies at the border would smear.
+    float footprint = max(length(uv_x), length(uv_y)) * float(textureSize(impostor_color, 0).x);
+    float detail = clamp(2.0 - 0.5 * footprint, 0.0, 1.0);
+    float nearer = covered > 0.02 ? detail * (2.0 * depth / covered - 1.0) * kind.sphere.w : 0.0;
     vec3 at = vec3(placeInView(kind.sphere, ray, toward, nearer), layer);
     vec4 c = textureGrad(impostor_color, at, uv_x, uv_y);
     vec4 n = textureGrad(impostor_normal, at, uv_x, uv_y);

@@ -142,6 +142,8 @@ void Gui::menu() {
 }
 
 void Gui::keys(const WindowInput& input) {
+  const bool dialog =
+      ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
   for (const auto& [key, modifiers] : input.keys) {
     const bool control = (modifiers & GLFW_MOD_CONTROL) != 0;
     const bool shift = (modifiers & GLFW_MOD_SHIFT) != 0;
@@ -151,7 +153,7 @@ void Gui::keys(const WindowInput& input) {
       session_->saveScreenshot();
     else if (control && key == GLFW_KEY_Q)
       askToClose();
-    else if (ImGui::GetIO().WantTextInput)
+    else if (ImGui::GetIO().WantTextInput || dialog)
       continue;
     else if (control && key == GLFW_KEY_O)
       openDialog();
@@ -405,7 +407,7 @@ void Gui::frame(const WindowInput& input, double seconds) {
   moveCamera(seconds);
   const glm::vec2 at(left, top), size(display.x - left, display.y - top - bottom);
   if (pixels.x > 0 && pixels.y > 0 && size.x >= 1.0f && size.y >= 1.0f) {
-    session_->draw(glm::ivec2(size));
+    session_->draw(glm::ivec2(size), ImGui::IsAnyItemActive());
     drawPictures(at, size);
     drawSurface(at, size);
   }

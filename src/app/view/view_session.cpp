@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "app/plant_prep.h"
 #include "app/view/orbit_camera.h"
@@ -14,8 +16,9 @@ namespace verdure::app {
 namespace {
 
 // Pictures that take longer are drawn smaller while something moves.
-constexpr double kSlow_s = 0.1, kFast_s = 0.045;
+constexpr double kSlow_s = 0.1, kFast_s = 0.045, kAim_s = 0.07;
 constexpr float kLeastScale = 0.3f;
+constexpr int kCoarseShadowMap = 512;
 constexpr double kRest_s = 0.25;
 constexpr float kLeastHeight = 2e-3f;  // of the eye over the ground, in the scene's reach
 
@@ -199,6 +202,11 @@ void ViewSession::renew() {
                for (const std::size_t p : bakes)
                  next = renewBake(next, p, wanted[p], field, true, control);
                for (const std::size_t p : motions) next = renewMotion(next, p, wanted[p], control);
+               // The previews are drawn first, with the whole processor.
+               for (int i = 0; i < 20 && !bakes.empty(); ++i) {
+                 control.show("preview", -1.0, true);
+                 std::this_thread::sleep_for(std::chrono::milliseconds(20));
+               }
                for (const std::size_t p : bakes)
                  next = renewBake(next, p, wanted[p], field, false, control);
              });
@@ -391,20 +399,26 @@ glm::ivec2 ViewSession::pictureSize(const glm::ivec2& area) const {
   return glm::max(glm::ivec2(area.x / columns, area.y), glm::ivec2(1));
 }
 
-void ViewSession::draw(const glm::ivec2& area) {
+bool ViewSession::rests() const {
+  // A sharp picture of what is about to be replaced would only keep its successor waiting.
+  return since_change_.seconds() >= kRest_s && !held_ && !(coarse_ && job_.busy());
+}
+
+void ViewSession::draw(const glm::ivec2& area, bool held) {
   if (clip_) return drawClipFrame();
   const int columns = beside == Beside::kNothing ? 1 : 2;
   const glm::ivec2 full = pictureSize(area);
   if (area != area_) since_change_.lap();
   area_ = area;
-  const bool moves = since_change_.seconds() < kRest_s;
+  held_ = held;
+  const bool moves = !rests();
   const float scale = moves ? scale_ : 1.0f;
   const glm::ivec2 size = glm::max(glm::ivec2(glm::vec2(full) * scale), glm::ivec2(1));
   if (coarse_ && !moves) dirty_[0] = dirty_[1] = true;
   for (int picture = 0; picture < columns; ++picture) {
     const bool traced = picture == 1 && beside == Beside::kTracer;
-    // A smaller picture that is up to date is better than none while a window is resized.
-    if (!dirty_[picture] && (drawn_size_[picture] == size || coarse_)) continue;
+    // While something moves, a picture of another size that is up to date will do.
+    if (!dirty_[picture] && (moves || drawn_size_[picture] == size)) continue;
     if (traced) {
       if (tracer_.busy()) tracer_.stop();
       dirty_[1] = false;
@@ -418,18 +432,25 @@ void ViewSession::draw(const glm::ivec2& area) {
       view.seconds = view_.seconds;
       view.width = size.x;
       view.height = size.y;
+      if (scale < 1.0f) {  // the sun's maps cost as much in any size of the picture
+        view.shadow_map_size = std::min(view.shadow_map_size, kCoarseShadowMap);
+        view.shadow_cascades = 1;
+      }
       const Timer timer;
+      coarse_ = scale < 1.0f;
       frames_[picture] = screen_->draw(picture, view, static_cast<Inspection>(inspected));
       draw_seconds_ = timer.seconds();
-      if (moves && draw_seconds_ > kSlow_s) scale_ = std::max(scale_ * 0.75f, kLeastScale);
-      if (moves && draw_seconds_ < kFast_s) scale_ = std::min(scale_ * 1.15f, 1.0f);
+      // Pixels are most of what a picture costs. One in full tells where to begin.
+      const bool first = !moves && scale_ == 1.0f;
+      if ((moves || first) && (draw_seconds_ > kSlow_s || draw_seconds_ < kFast_s))
+        scale_ = std::clamp(scale * static_cast<float>(std::sqrt(kAim_s / draw_seconds_)),
+                            kLeastScale, 1.0f);
     } catch (const std::exception& e) {
       fail(e);
     }
     dirty_[picture] = false;
     drawn_size_[picture] = size;
   }
-  coarse_ = scale < 1.0f;
   if (beside != Beside::kTracer) {
     if (tracer_.busy()) tracer_.stop();
     tracing_stale_ = true;
@@ -444,7 +465,7 @@ void ViewSession::draw(const glm::ivec2& area) {
 
 double ViewSession::rest() const {
   if (playing || clip_ || dirty_[0]) return 0.0;
-  if (coarse_ || (beside == Beside::kTracer && tracing_stale_))
+  if ((coarse_ || (beside == Beside::kTracer && tracing_stale_)) && !held_ && !job_.busy())
     return std::max(kRest_s - since_change_.seconds(), 1e-3);
   return status() ? 0.25 : 1.0;
 }

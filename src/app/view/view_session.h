@@ -69,8 +69,9 @@ class ViewSession {
   /// Time goes on by so many seconds.
   void advance(double seconds);
   /// Draws what is out of date into the screen's pictures, for an area of so many pixels. While
-  /// something moves, pictures that take long are drawn smaller, and again when it rests.
-  void draw(const glm::ivec2& area);
+  /// something moves, pictures that take long are drawn smaller, and again when it rests. `held`: a
+  /// parameter is being dragged.
+  void draw(const glm::ivec2& area, bool held);
   /// Seconds until draw() has something to do without input.
   double rest() const;
 
@@ -110,6 +111,7 @@ class ViewSession {
   void rebuildView();
   View viewWith(const LookSettings& look) const;
   void drawClipFrame();
+  bool rests() const;  ///< nothing moves, and what is shown is worth to be drawn in full
   glm::ivec2 pictureSize(const glm::ivec2& area) const;  ///< of each picture in full
   void fail(const std::exception& problem);
 
@@ -132,6 +134,7 @@ class ViewSession {
   glm::ivec2 drawn_size_[Screen::kPictures] = {};
   Frame frames_[Screen::kPictures];
   float scale_ = 1.0f;   ///< of pictures while something moves
+  bool held_ = false;    ///< as draw() was told
   bool coarse_ = false;  ///< the pictures are drawn smaller than they are shown
   glm::ivec2 area_{0};   ///< that draw() was last called for
   Timer since_change_;   ///< seconds

@@ -75,9 +75,7 @@ int run(int argc, char** argv) {
   view.terms.ambient_source = AmbientSource::kBaked;
   view.wind.speed = 5.0f;
   view.seconds = 3.0;
-  if (const char* maps = std::getenv("FOREST_MAPS")) view.shadow_map_size = std::atoi(maps);
-  if (const char* n = std::getenv("FOREST_CASCADES")) view.shadow_cascades = std::atoi(n);
-  if (std::getenv("FOREST_STILL")) view.wind.speed = 0.0f;
+  view.shadow_map_size = 1024;
 
   std::vector<Kind> kinds;
   for (const char* species : {"quaking-aspen", "japanese-maple"})
@@ -88,13 +86,12 @@ int run(int argc, char** argv) {
                                                        .corner = glm::vec2(-0.5f * side),
                                                        .size_m = glm::vec2(side),
                                                        .per_m2 = 0.04f,
-                     .taken = {}});
+                                                       .taken = {}});
   view.camera = {{0.0f, 6.0f, 0.0f}, {0.0f, 4.0f, -30.0f}, 0.6f};
   Forest few, many;
   for (const Kind& kind : kinds)
     few.kinds.push_back({&kind.plant, &kind.light, &kind.motion, &kind.levels});
-  if (const char* detail = std::getenv("FOREST_DETAIL"))
-    few.detail = many.detail = static_cast<float>(std::atof(detail));
+  few.detail = many.detail = argc > 6 ? static_cast<float>(std::atof(argv[6])) : 1.0f;
   many.kinds = few.kinds;
   std::vector<std::pair<float, std::size_t>> inside;
   const float slope = 1.1f * std::tan(0.5f * view.camera.vertical_fov) *
@@ -131,11 +128,12 @@ int run(int argc, char** argv) {
       choosing.push_back(t.motion_ms);
     }
     std::printf(
-        "%7zu trees: loaded in %.2f s, frame %.1f ms (choice and motion %.1f, the last one's maps of "
+        "%7zu trees: loaded in %.2f s, frame %.1f ms (choice and motion %.1f, the last one's maps "
+        "of "
         "the sun %.1f, picture %.1f)\n",
         forest->places.size(), loading, median(times), median(choosing), frame.times.shadow_ms,
         frame.times.color_ms);
-    if (forest == &many && argc > 6) writePng(frame.image, argv[6]);
+    if (forest == &many && argc > 7) writePng(frame.image, argv[7]);
   }
   return 0;
 }

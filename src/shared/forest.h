@@ -54,8 +54,8 @@ struct ForestView {
   uint seats;       ///< and how many have room
   uint first_far;   ///< of its impostors
   uint fars;
-  uint motion;  ///< 1: all trees around that may be drawn as meshes, for their motion
-  uint horizon;    ///< 1: what hills hide is left out
+  uint motion;   ///< 1: all trees around that may be drawn as meshes, for their motion
+  uint horizon;  ///< 1: what hills hide is left out
 };
 SHARED_SIZE(ForestView, 144);
 

@@ -6,11 +6,13 @@
 #include <stdexcept>
 #include <thread>
 
+#include "app/plant_prep.h"
 #include "app/view/background_job.h"
 #include "app/view/fly_camera.h"
 #include "app/view/orbit_camera.h"
 #include "app/view/surface_overlay.h"
 #include "scene/camera.h"
+#include "verdure/grow.h"
 
 namespace verdure::app {
 namespace {
@@ -263,6 +265,31 @@ TEST(BackgroundJob, ClosingWhileItRunsWaitsForItToNotice) {
     job.start("never", [](BackgroundJob::Control&) { FAIL(); });
   }
   EXPECT_TRUE(ended);
+}
+
+TEST(MotionSettings, LevelsAndBranchesBendByTheirFactors) {
+  GrowOptions tree;
+  tree.set = {{"Levels", "2"}, {"Leaves", "4"}};
+  tree.leaf_form = LeafForm::kCard;
+  tree.texture_size = 32;
+  const Plant plant = grow(tree);
+  const PlantMotion usual = motionOf(plant, {});
+  MotionSettings settings;
+  settings.level_flexibility = {1.0f, 0.0f, 1.0f, 1.0f};
+  settings.branches = {{0, 2.5f}, {1000000, 3.0f}};
+  const PlantMotion bent = motionOf(plant, settings);
+  const Wind wind{.speed = 2.0f};
+  const auto amplitudes = branchAmplitudes(bent, wind, 1.5);
+  ASSERT_GT(bent.branches.size(), 10u);
+  for (std::size_t b = 0; b < bent.branches.size(); ++b) {
+    const bool trunk = bent.tree.branches[b].level == 0;
+    const float factor = b == 0 ? 2.5f : trunk ? 1.0f : 0.0f;
+    EXPECT_FLOAT_EQ(bent.branches[b].mean, factor * usual.branches[b].mean);
+    EXPECT_FLOAT_EQ(bent.branches[b].swing, factor * usual.branches[b].swing);
+    EXPECT_EQ(glm::length(amplitudes[b]) > 0.0f, trunk) << b;
+  }
+  // What is left alone stays, to the bit.
+  EXPECT_EQ(branchAmplitudes(usual, wind, 1.5), branchAmplitudes(plantMotion(plant), wind, 1.5));
 }
 
 }  // namespace

@@ -418,8 +418,8 @@ int run(int argc, char** argv) {
   if (app.get_subcommands().empty())
     throw Error(
         "command line", "no command is named",
-        "use grow, leaf, grass, inspect, bake, export, render, reference, compare, sky, figures, "
-        "report or bench; see " +
+        "use grow, leaf, grass, inspect, bake, export, render, view, reference, compare, sky, "
+        "figures, report or bench; see " +
             help);
   if (*figures_app && figures_app->get_subcommands().empty())
     throw Error("figures", "no paper is named",

@@ -391,7 +391,7 @@ TEST_F(CommandLine, RefusesWordsItDoesNotKnow) {
   expectRefused({"inspect", "a.glb", "--frobnicate"}, {"--frobnicate", "verdure inspect --help"});
   expectRefused({"inspect"}, {"file is required"});
   expectRefused({"bake", "a.glb"}, {"--output is required"});
-  expectRefused({"figures"}, {"no paper is named; use luft, gumbau, leaf, grass or sky"});
+  expectRefused({"figures"}, {"no paper is named; use luft, npr, gumbau, leaf, grass or sky"});
   expectRefused({"--threads", "-1", "inspect", "a.glb"}, {"--threads"});
 }
 

@@ -93,7 +93,9 @@ class Packer {
     const auto first_instance = static_cast<std::uint32_t>(out_.instances.size());
     for (const glm::mat4& instance : item.world_from_plant) {
       const glm::mat4 rows = glm::transpose(worldFromPlant(scene_, item, instance));
-      out_.instances.push_back({.rows = {rows[0], rows[1], rows[2]}});
+      const auto number = static_cast<std::uint32_t>(out_.instances.size());
+      out_.instances.push_back(
+          {.rows = {rows[0], rows[1], rows[2]}, .motion = {0, 0, number, PackedInstance::kPlain}});
     }
     if (item.motion != nullptr) packMotion(item, first_instance);
     const std::size_t first_draw = out_.draws.size();

@@ -165,18 +165,10 @@ class ImpostorBake {
   Impostor out_;
 };
 
-/// With the meshes of a level instead of its own.
-Plant withMeshes(const Plant& plant, const PlantLevel& level) {
-  Plant out;
-  out.name = plant.name;
-  out.meshes = level.meshes;
-  out.materials = plant.materials;
-  out.textures = plant.textures;
-  return out;
-}
-
-/// The level whose leaves grow so that it covers as much as the plant does.
-PlantLevel coveringLevel(const Plant& plant, double covered, SimplifyOptions options) {
+/// The level whose leaves grow so that it covers as much as the plant does. `probe` has the plant's
+/// materials and textures, and takes the meshes that are tried.
+PlantLevel coveringLevel(const Plant& plant, Plant& probe, double covered,
+                         SimplifyOptions options) {
   constexpr int kTries = 6;
   constexpr double kClose = 0.003;
   PlantLevel level = simplifyPlant(plant, options);
@@ -185,7 +177,8 @@ PlantLevel coveringLevel(const Plant& plant, double covered, SimplifyOptions opt
   double last_growth = 0.0, last = 0.0;
   for (int i = 0; i < kTries; ++i) {
     const double growth = std::log(double{level.leaf_growth});
-    const double now = std::log(meanCoverage(withMeshes(plant, level)) / covered);
+    probe.meshes = level.meshes;
+    const double now = std::log(meanCoverage(probe) / covered);
     if (!std::isfinite(now) || std::abs(now) < kClose) break;
     if (i > 0 && std::abs(growth - last_growth) > 1e-6)
       slope = std::clamp((now - last) / (growth - last_growth), 0.2, 2.0);
@@ -246,11 +239,15 @@ Impostor bakeImpostor(const Plant& plant, const CrownLight* light, const Imposto
 PlantLevels makeLevels(const Plant& plant, const CrownLight* light, const LevelOptions& options) {
   PlantLevels levels;
   const double covered = meanCoverage(plant);
+  Plant probe;
+  probe.name = plant.name;
+  probe.materials = plant.materials;
+  probe.textures = plant.textures;
   for (const float share : options.leaf_shares) {
     if (!(share > 0.0f && share < 1.0f))
       throw Error(plant.name, "a share of leaves is out of range", "choose between 0 and 1");
     levels.meshes.push_back(
-        coveringLevel(plant, covered, {.leaf_share = share, .wood_share = share}));
+        coveringLevel(plant, probe, covered, {.leaf_share = share, .wood_share = share}));
   }
   levels.impostor = bakeImpostor(plant, light, options.impostor);
   return levels;

@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 constexpr int kMostFrames = 15;
 constexpr double kSeconds = 12.0;  ///< of a table
 /// A football pitch about the eye.
-constexpr float kFar_m = 50.0f;
+constexpr float kPitch_m = 50.0f;
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -32,7 +32,7 @@ double median(std::vector<double> values) {
 }
 
 /// Medians; times are the GPU's for the picture before its tone curve.
-struct Measured {
+struct MeasuredWay {
   double ms = 0.0;
   double of_first = 1.0;  ///< times as long as the first of those measured in turns
   int frames = 0;
@@ -78,7 +78,7 @@ class GrassBench {
   }
 
   /// In turns: a machine that is slow for a while is so for all.
-  std::vector<Measured> measure(const std::pair<int, int>& size, const std::vector<Way>& ways) {
+  std::vector<MeasuredWay> measure(const std::pair<int, int>& size, const std::vector<Way>& ways) {
     // To warm up. Drivers compile for powers of two and other sizes apart: an eighth is as the
     // whole.
     std::tie(view_.width, view_.height) =
@@ -86,7 +86,7 @@ class GrassBench {
     for (const Way& way : ways) draw(way);
     std::tie(view_.width, view_.height) = size;
     std::vector<std::vector<double>> times(ways.size()), ratios(ways.size()), sorts(ways.size());
-    std::vector<Measured> measured(ways.size());
+    std::vector<MeasuredWay> measured(ways.size());
     const Timer timer;
     for (int round = 0; round < frames_.value_or(kMostFrames); ++round) {
       if (!frames_ && round > 0 && timer.seconds() * (round + 1) / round > kSeconds) break;
@@ -127,18 +127,18 @@ class GrassBench {
 struct GrassTable {
   struct Picture {
     std::pair<int, int> size;
-    Measured traced;
-    Measured near;      ///< as far as rays meet slices one by one
-    Measured near_cut;  ///< the same in exact order
-    Measured far;
+    MeasuredWay traced;
+    MeasuredWay near;      ///< as far as rays meet slices one by one
+    MeasuredWay near_cut;  ///< the same in exact order
+    MeasuredWay far;
   };
   struct Spacing {
     float factor = 1.0f;
-    Measured traced, near;
+    MeasuredWay traced, near;
   };
   std::vector<Picture> pictures;
   std::pair<int, int> size;  ///< of the rest
-  std::vector<std::pair<int, Measured>> most_slices;
+  std::vector<std::pair<int, MeasuredWay>> most_slices;
   std::vector<Spacing> spacings;
 };
 
@@ -150,10 +150,10 @@ GrassTable measureGrass(GrassBench& bench, const std::vector<std::pair<int, int>
   std::vector<Way> ways{{meadows[0].get()},
                         {meadows[0].get(), BillboardTrial{}},
                         {meadows[0].get(), BillboardTrial{.cut = true}},
-                        {meadows[0].get(), BillboardTrial{.radius_m = kFar_m}}};
+                        {meadows[0].get(), BillboardTrial{.radius_m = kPitch_m}}};
   for (const auto& size : sizes) {
     progress.show(fmt::format("{} x {} pixels", size.first, size.second));
-    const std::vector<Measured> m = bench.measure(size, ways);
+    const std::vector<MeasuredWay> m = bench.measure(size, ways);
     table.pictures.push_back({size, m[0], m[1], m[2], m[3]});
   }
   const auto smallest = std::min_element(
@@ -167,9 +167,9 @@ GrassTable measureGrass(GrassBench& bench, const std::vector<std::pair<int, int>
   for (const int slices : {4, 8, 16, 32}) {
     meadows.push_back(bench.meadow(slices, 1.0f));
     ways.push_back({meadows.back().get()});
-    table.most_slices.emplace_back(slices, Measured{});
+    table.most_slices.emplace_back(slices, MeasuredWay{});
   }
-  std::vector<Measured> m = bench.measure(table.size, ways);
+  std::vector<MeasuredWay> m = bench.measure(table.size, ways);
   for (std::size_t i = 0; i < m.size(); ++i) table.most_slices[i].second = m[i];
 
   progress.show("distances of slices");
@@ -201,7 +201,7 @@ void print(const GrassTable& table) {
   for (const GrassTable::Picture& p : table.pictures) {
     std::string size = nameOf(p.size), frames = std::to_string(p.traced.frames),
                 traced = number(p.traced.ms);
-    for (const Measured* m : {&p.near, &p.near_cut, &p.far}) {
+    for (const MeasuredWay* m : {&p.near, &p.near_cut, &p.far}) {
       const char* cut = m == &p.near_cut ? ", cut at crossings" : "";
       fmt::print(fmt::runtime(kRow), size, frames, traced,
                  fmt::format("{} to {:.1f} m{}", m->polygons, double{m->radius_m}, cut),
@@ -220,7 +220,7 @@ void print(const GrassTable& table) {
                near.of_first / traced.of_first, near.polygons);
 }
 
-Json jsonOf(const Measured& m) {
+Json jsonOf(const MeasuredWay& m) {
   return {{"ms", sixDigits(m.ms)},
           {"speedup", sixDigits(m.of_first)},
           {"polygons", m.polygons},

@@ -63,9 +63,9 @@ struct SunPosition {
   const char* name;
   float azimuth_deg, elevation_deg;  // the camera looks from 35 degrees
   Daylight daylight() const {
-    constexpr float kTurbidity = 3.0f, kDegree = static_cast<float>(M_PI / 180.0);
+    constexpr float kTurbidity = 3.0f;
     return preethamDaylight(kTurbidity,
-                            directionOf(azimuth_deg * kDegree, elevation_deg * kDegree));
+                            directionOf(glm::radians(azimuth_deg), glm::radians(elevation_deg)));
   }
 };
 inline constexpr std::array<SunPosition, 3> kSuns{{

@@ -24,8 +24,6 @@
 namespace verdure::app {
 namespace {
 
-constexpr float kDegree = static_cast<float>(M_PI / 180.0);
-
 /// One candidate's picture of one plant under one sun.
 struct Outcome {
   double flip = 0.0;      ///< mean, of what both look like at the reference's exposure
@@ -139,8 +137,8 @@ class SubjectPictures {
   std::array<Outcomes, kSuns.size()> draw(const Subject& subject) {
     const std::string& species = subject.name;
     const float aspect = static_cast<float>(view_.width) / static_cast<float>(view_.height);
-    view_.camera =
-        automaticCamera(subject.scene(kCandidates[0]), 35.0f * kDegree, 4.0f * kDegree, aspect);
+    view_.camera = automaticCamera(subject.scene(kCandidates[0]), glm::radians(35.0f),
+                                   glm::radians(4.0f), aspect);
     std::array<HdrImage, kSuns.size()> truth;
     for (std::size_t s = 0; s < kSuns.size(); ++s) {
       progress_->show(fmt::format("{}: reference, {}", species, kSuns[s].name));

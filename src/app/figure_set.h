@@ -5,8 +5,25 @@
 
 #include "app/commands.h"
 #include "app/page.h"
+#include "verdure/density.h"
+#include "verdure/grow.h"
 
 namespace verdure::app {
+
+/// A plant and the bake of its density.
+struct GrownPlant {
+  Plant plant;
+  DensityBake bake;
+};
+
+inline GrownPlant growBaked(const std::string& species, std::uint32_t seed) {
+  GrowOptions options;
+  options.species = species;
+  options.seed = seed;
+  GrownPlant grown{grow(options), {}};
+  grown.bake = bakeDensity(grown.plant);
+  return grown;
+}
 
 /// The page of a paper's figures, and what draws its pictures.
 class FigureSet {

@@ -12,21 +12,6 @@
 namespace verdure::app {
 namespace {
 
-/// A plant with its light.
-struct LitPlant {
-  Plant plant;
-  DensityBake bake;
-};
-
-LitPlant growLit(const std::string& species, std::uint32_t seed) {
-  GrowOptions options;
-  options.species = species;
-  options.seed = seed;
-  LitPlant lit{grow(options), {}};
-  lit.bake = bakeDensity(lit.plant);
-  return lit;
-}
-
 /// Fig. 2: the implicit surface of two generators of the plane.
 std::string implicitSurfaceSvg() {
   const Generator2 generators[] = {{{-0.45f, -0.05f}, 1.0f}, {{0.62f, 0.15f}, 0.78f}};
@@ -127,8 +112,8 @@ Plant surfacePlant(const Surface& surface) {
 
 void drawGroup(FigureSet& figures) {
   // Fig. 1: a group of trees, each baked by itself.
-  const LitPlant group[] = {growLit("black-oak", 4), growLit("silver-birch", 2),
-                            growLit("japanese-maple", 4)};
+  const GrownPlant group[] = {growBaked("black-oak", 4), growBaked("silver-birch", 2),
+                              growBaked("japanese-maple", 4)};
   const glm::vec3 places[] = {{0, 0, -2}, {-7, 0, -1}, {5.5f, 0, 2.5f}};
   Scene scene;
   for (std::size_t i = 0; i < 3; ++i)
@@ -145,7 +130,7 @@ void drawGroup(FigureSet& figures) {
   figures.page().endRow();
 }
 
-void drawSurfaces(FigureSet& figures, const LitPlant& tree) {
+void drawSurfaces(FigureSet& figures, const GrownPlant& tree) {
   figures.page().heading("Figure 3: one tree and its surfaces under three (ρ, τ)");
   figures.page().beginRow();
   figures.draw("figure3a", presetTerms("standard"), "(a) the tree");
@@ -214,7 +199,7 @@ void runLuftFigures(const FiguresCommand& command) {
   figures.page().endRow();
 
   progress.show("figure 3");
-  const LitPlant tree = growLit(command.species, 4);
+  const GrownPlant tree = growBaked(command.species, 4);
   Scene scene;
   scene.items.push_back({&tree.plant, &tree.bake.light});
   figures.show(scene, 35.0f);
@@ -231,7 +216,7 @@ void runLuftFigures(const FiguresCommand& command) {
 
   progress.show("figure 6");
   figures.page().heading("Figure 6: standard and expressive (the paper's photograph is left out)");
-  const LitPlant other = growLit("quaking-aspen", 2);
+  const GrownPlant other = growBaked("quaking-aspen", 2);
   Scene second;
   second.items.push_back({&other.plant, &other.bake.light});
   figures.show(second, 20.0f);

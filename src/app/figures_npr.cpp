@@ -3,26 +3,9 @@
 
 #include "app/figure_set.h"
 #include "base/progress.h"
-#include "verdure/density.h"
-#include "verdure/grow.h"
 
 namespace verdure::app {
 namespace {
-
-struct LitPlant {
-  Plant plant;
-  CrownLight light;
-};
-
-/// With the paper's own field: its coefficient is what dims the crown's inside.
-LitPlant growLit(const std::string& species, std::uint32_t seed) {
-  GrowOptions options;
-  options.species = species;
-  options.seed = seed;
-  LitPlant lit{grow(options), {}};
-  lit.light = bakeDensity(lit.plant).light;
-  return lit;
-}
 
 struct Column {
   const char *name, *caption;
@@ -48,10 +31,10 @@ void drawRow(FigureSet& figures, const std::string& name, Style style) {
   figures.page().endRow();
 }
 
-void drawFigure7(FigureSet& figures, const LitPlant& tree) {
+void drawFigure7(FigureSet& figures, const GrownPlant& tree) {
   Scene scene;
   scene.ground = false;
-  scene.items.push_back({&tree.plant, &tree.light});
+  scene.items.push_back({&tree.plant, &tree.bake.light});
   figures.view().background = glm::vec3(1.0f);
   figures.show(scene, 35.0f);
   figures.page().heading("Figure 7: application to non-photorealistic rendering");
@@ -73,25 +56,25 @@ void drawPlate(FigureSet& figures, const std::string& name, const std::string& c
   figures.page().endRow();
 }
 
-void drawFigure8(FigureSet& figures, const LitPlant& tree, const std::string& species,
+void drawFigure8(FigureSet& figures, const GrownPlant& tree, const std::string& species,
                  Progress& progress) {
   figures.page().heading("Plates in the manner of Figure 8: single plants, and a group");
   figures.view().background.reset();
-  std::vector<LitPlant> others;
+  std::vector<GrownPlant> others;
   for (const char* const name : {"weeping-willow", "scots-pine", "silver-birch", "hedge"}) {
     progress.show(name);
-    others.push_back(growLit(name, 1));
+    others.push_back(growBaked(name, 1));
     Scene scene;
-    scene.items.push_back({&others.back().plant, &others.back().light});
+    scene.items.push_back({&others.back().plant, &others.back().bake.light});
     figures.show(scene, 35.0f);
     drawPlate(figures, name, name);
   }
   progress.show("group");
   Scene group;
-  const auto stand = [&group](const LitPlant& lit, const glm::vec3& at) {
+  const auto stand = [&group](const GrownPlant& lit, const glm::vec3& at) {
     group.items.push_back(
         {&lit.plant,
-         &lit.light,
+         &lit.bake.light,
          {glm::mat4({1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, glm::vec4(at, 1.0f))}});
   };
   stand(tree, {0, 0, -3});
@@ -114,7 +97,7 @@ void runNprFigures(const FiguresCommand& command) {
   figures.view().shadow_cascades = 1;
   Progress progress("figures npr");
   progress.show("figure 7");
-  const LitPlant tree = growLit(command.species, 4);
+  const GrownPlant tree = growBaked(command.species, 4);
   drawFigure7(figures, tree);
   drawFigure8(figures, tree, command.species, progress);
   figures.page().write();

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-void listSpecies(bool json) {
+void listGrasses(bool json) {
   Json all = Json::array();
   for (const std::string& name : grassSpeciesNames()) {
     const GrassSpecies species = grassSpecies(name);
@@ -36,7 +36,7 @@ double meanCover(const GrassSet& set) {
 }  // namespace
 
 void runGrassGrow(const GrassGrowCommand& command) {
-  if (command.list) return listSpecies(command.json);
+  if (command.list) return listGrasses(command.json);
   if (command.output.empty())
     throw Error("grass grow", "no folder is named", "add -o FOLDER, or --list for the species");
   const GrassSpecies species = grassSpecies(command.species);

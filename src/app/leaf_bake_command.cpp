@@ -55,7 +55,7 @@ Json jsonOfReport(const LeafSet& set, const LeafBakeReport& r, const std::string
 }
 
 Json jsonOfErrors(const LeafErrors& e) {
-  return {{"elevation_deg", e.elevation * 180.0 / std::numbers::pi},
+  return {{"elevation_deg", glm::degrees(e.elevation)},
           {"mean", e.mean},
           {"mean_absolute", e.mean_absolute},
           {"rms", e.rms},

@@ -17,7 +17,6 @@
 namespace verdure::app {
 namespace {
 
-constexpr float kDegree = static_cast<float>(M_PI / 180.0);
 constexpr double kSquareMetresOfHectare = 1e4;
 /// Kinds that stand so often get coarser levels; making them takes longer than drawing a few whole.
 constexpr std::size_t kManyPlaces = 8;
@@ -338,7 +337,7 @@ std::vector<Placement> LoadedScene::scatter(const ScatterSettings& settings,
     options.density = &*density;
   }
   if (terrain_) options.terrain = &*terrain_;
-  options.most_slope = settings.most_slope_deg * kDegree;
+  options.most_slope = glm::radians(settings.most_slope_deg);
   if (settings.height) {
     options.lowest_m = settings.height->x;
     options.highest_m = settings.height->y;

@@ -93,7 +93,7 @@ Json addDeflections(Page& page) {
       }
       const auto angle = [](const std::vector<glm::dvec2>& points) {
         const glm::dvec2 d = points.back() - points[points.size() - 2];
-        return std::atan2(d.y, d.x) * 180.0 / M_PI;
+        return glm::degrees(std::atan2(d.y, d.x));
       };
       const double off = angle(ours) - angle(truth);
       rows.push_back({{"taper", alpha},
@@ -111,7 +111,7 @@ Json addDeflections(Page& page) {
 }
 
 /// How a branch moves with a texture, and how an oscillator in wind would.
-struct Measured {
+struct MeasuredBranch {
   std::vector<double> power;
   double error = 0.0, peak = 0.0, true_peak = 0.0;
 };
@@ -124,7 +124,7 @@ double truePower(const BranchOscillator& branch, std::size_t bin) {
   return a * a;
 }
 
-Measured measure(const BranchOscillator& branch, MotionLayout layout) {
+MeasuredBranch measure(const BranchOscillator& branch, MotionLayout layout) {
   Spectrum spectrum(kRecord, kBins);
   MotionTextureOptions options;
   options.layout = layout;
@@ -139,7 +139,7 @@ Measured measure(const BranchOscillator& branch, MotionLayout layout) {
             texture.sample(shared::motionUv(trajectory, time.whole, time.fraction), channel)};
       });
   }
-  Measured out{spectrum.power};
+  MeasuredBranch out{spectrum.power};
   out.error = spectrum.errorTo([&](std::size_t bin) { return truePower(branch, bin); });
   const auto peak = [](const auto& power) {
     std::size_t best = 8;
@@ -186,7 +186,7 @@ Json addSpectra(Page& page, Progress& progress) {
     for (const auto& [layout, name] : {std::pair(MotionLayout::kSeparable, "separable"),
                                        std::pair(MotionLayout::kRadial, "radial (thesis)")}) {
       progress.show(fmt::format("spectra: damping ratio {}, {}", damping, name));
-      const Measured measured = measure(branch, layout);
+      const MeasuredBranch measured = measure(branch, layout);
       double total = 0.0;
       for (std::size_t bin = 1; bin < kBins; ++bin) total += measured.power[bin];
       std::vector<glm::dvec2> curve;

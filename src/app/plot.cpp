@@ -10,7 +10,7 @@
 namespace verdure::app {
 namespace {
 
-constexpr int kLeft = 64, kRight = 16, kTop = 16, kBottom = 46;
+constexpr int kLeftMargin = 64, kRightMargin = 16, kTopMargin = 16, kBottomMargin = 46;
 constexpr std::array<const char*, 6> kColors{"#1b7837", "#762a83", "#d95f02",
                                              "#2166ac", "#999999", "#b2182b"};
 
@@ -41,21 +41,21 @@ Plot::Plot(Axis x, Axis y, int width, int height)
     body_ += fmt::format(
         "<path d='M{0:.1f} {1}V{2}' stroke='#ddd'/><text x='{0:.1f}' y='{3}' font-size='12' "
         "text-anchor='middle'>{4:g}</text>",
-        at, kTop, height_ - kBottom, height_ - kBottom + 18, t);
+        at, kTopMargin, height_ - kBottomMargin, height_ - kBottomMargin + 18, t);
   });
   ticks(y_, [&](double t) {
     const double at = place({x_.low, t}).y;
     body_ += fmt::format(
         "<path d='M{0} {1:.1f}H{2}' stroke='#ddd'/><text x='{3}' y='{4:.1f}' font-size='12' "
         "text-anchor='end'>{5:g}</text>",
-        kLeft, at, width_ - kRight, kLeft - 6, at + 4, t);
+        kLeftMargin, at, width_ - kRightMargin, kLeftMargin - 6, at + 4, t);
   });
   body_ += fmt::format("<text x='{}' y='{}' font-size='13' text-anchor='middle'>{}</text>",
-                       (kLeft + width_ - kRight) / 2, height_ - 8, x_.label);
+                       (kLeftMargin + width_ - kRightMargin) / 2, height_ - 8, x_.label);
   body_ += fmt::format(
       "<text transform='translate(14 {}) rotate(-90)' font-size='13' "
       "text-anchor='middle'>{}</text>",
-      (kTop + height_ - kBottom) / 2, y_.label);
+      (kTopMargin + height_ - kBottomMargin) / 2, y_.label);
 }
 
 double Plot::across(const Axis& axis, double value) const {
@@ -64,8 +64,8 @@ double Plot::across(const Axis& axis, double value) const {
 }
 
 glm::dvec2 Plot::place(const glm::dvec2& point) const {
-  return {kLeft + across(x_, point.x) * (width_ - kLeft - kRight),
-          height_ - kBottom - across(y_, point.y) * (height_ - kTop - kBottom)};
+  return {kLeftMargin + across(x_, point.x) * (width_ - kLeftMargin - kRightMargin),
+          height_ - kBottomMargin - across(y_, point.y) * (height_ - kTopMargin - kBottomMargin)};
 }
 
 void Plot::curve(const std::string& name, const std::vector<glm::dvec2>& points, bool dashed) {
@@ -90,11 +90,11 @@ void Plot::curve(const std::string& name, const std::vector<glm::dvec2>& points,
                        dashes);
   ++curves_;
   if (name.empty()) return;
-  const int y = kTop + 18 * (++keys_);
+  const int y = kTopMargin + 18 * (++keys_);
   key_ += fmt::format(
       "<path d='M{0} {1}h26' stroke='{2}' stroke-width='2'{3}/><text x='{4}' y='{5}' "
       "font-size='12'>{6}</text>",
-      kLeft + 12, y - 4, color, dashes, kLeft + 44, y, name);
+      kLeftMargin + 12, y - 4, color, dashes, kLeftMargin + 44, y, name);
 }
 
 std::string Plot::svg() const {

@@ -40,7 +40,7 @@ Placement readPlacement(const Json& entry, std::size_t plants, const std::string
       for (int a = 0; a < 3; ++a)
         place.position[a] = numberOf(value[static_cast<std::size_t>(a)], where, key);
     } else if (key == "angle_deg") {
-      place.angle = numberOf(value, where, key) * static_cast<float>(M_PI / 180.0);
+      place.angle = glm::radians(numberOf(value, where, key));
     } else if (key == "scale") {
       place.scale = numberOf(value, where, key);
       if (!(place.scale > 0.0f)) throw Error(where, "\"scale\" is not above 0", "1 is usual");

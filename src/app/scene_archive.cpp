@@ -11,10 +11,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kFormat = "verdure-scene";
-constexpr double kDegree = M_PI / 180.0;
 
 float radiansOf(double degrees) {
-  return static_cast<float>(degrees * kDegree);
+  return static_cast<float>(glm::radians(degrees));
 }
 
 }  // namespace
@@ -234,7 +233,7 @@ void SceneWriter::assignments(const char* key,
 
 void SceneWriter::angle(const char* key, float radians) {
   // The fewest digits that come back as the same angle.
-  double degrees = double{radians} / kDegree;
+  double degrees = glm::degrees(double{radians});
   for (int digits = 6; digits < 17; ++digits) {
     const double rounded = std::stod(fmt::format("{:.{}g}", degrees, digits));
     if (radiansOf(rounded) == radians) {

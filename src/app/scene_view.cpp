@@ -12,7 +12,6 @@
 namespace verdure::app {
 namespace {
 
-constexpr float kDegree = static_cast<float>(M_PI / 180.0);
 constexpr float kLowestSun_deg = -12.0f;  // the end of nautical twilight
 constexpr glm::vec2 kUsualSun_deg{85.0f, 42.0f};
 constexpr int kLastCloudyType = 6;  // CIE skies up to it hide the sun
@@ -38,7 +37,7 @@ glm::vec3 sunDirection(const DaylightSettings& options) {
         "--sun",
         fmt::format("at an elevation of {:g} degrees it is night, and all is black", sun[1]),
         fmt::format("choose {:g} or more", kLowestSun_deg));
-  return directionOf(sun[0] * kDegree, sun[1] * kDegree);
+  return directionOf(glm::radians(sun[0]), glm::radians(sun[1]));
 }
 
 int cieType(const std::string& sky) {
@@ -130,7 +129,7 @@ Wind windOf(const WindSettings& options, bool film) {
     throw Error("--wind", fmt::format("{:g} m/s is out of range", wind.speed), "choose 0 to 60");
   if (!std::isfinite(options.from_deg))
     throw Error("--wind-from", "must be a finite number", "0 is from +Z, 90 from +X");
-  wind.from = options.from_deg * kDegree;
+  wind.from = glm::radians(options.from_deg);
   if (!(options.gusts >= 0.0f && options.gusts <= 1.0f))
     throw Error("--gusts", fmt::format("{:g} is out of range", options.gusts), "choose 0 to 1");
   wind.gusts = options.gusts;
@@ -178,9 +177,9 @@ View viewOf(const SceneSettings& settings, bool film) {
 Camera cameraOf(const SceneSettings& settings, const Scene& scene) {
   const CameraSettings& camera = settings.camera;
   checkFieldOfView(camera);
-  const float fov = static_cast<float>(camera.fov_deg) * kDegree;
+  const float fov = glm::radians(static_cast<float>(camera.fov_deg));
   if (camera.eye) return {*camera.eye, camera.target, fov};
-  return automaticCamera(scene, camera.from_deg[0] * kDegree, camera.from_deg[1] * kDegree,
+  return automaticCamera(scene, glm::radians(camera.from_deg[0]), glm::radians(camera.from_deg[1]),
                          static_cast<float>(settings.width) / static_cast<float>(settings.height),
                          fov);
 }

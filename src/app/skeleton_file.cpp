@@ -12,7 +12,7 @@
 namespace verdure::app {
 namespace {
 
-constexpr int kHeight = 1600, kMargin = 40, kLeastWidth = 400, kMostWidth = 2400;
+constexpr int kPictureHeight = 1600, kPictureMargin = 40, kLeastWidth = 400, kMostWidth = 2400;
 
 int levelsOf(const Plant& plant) {
   int levels = 0;
@@ -48,15 +48,15 @@ glm::vec3 levelColor(int level) {
 }
 
 /// One side of the drawing: a parallel projection.
-class View {
+class SideView {
  public:
-  View(Image& image, float left, float scale, const glm::vec3& foot, int axis, float sign)
+  SideView(Image& image, float left, float scale, const glm::vec3& foot, int axis, float sign)
       : image_(image), left_(left), scale_(scale), foot_(foot), axis_(axis), sign_(sign) {}
 
   glm::vec2 pixel(const glm::vec3& p) const {
     const glm::vec3 off = p - foot_;
     return {left_ + sign_ * off[axis_] * scale_,
-            static_cast<float>(image_.height - kMargin) - off.y * scale_};
+            static_cast<float>(image_.height - kPictureMargin) - off.y * scale_};
   }
 
   /// A line with round ends whose half width goes from r to s metres, at least one pixel wide.
@@ -101,18 +101,18 @@ Image drawingOf(const Plant& plant) {
   const Bounds box = bounds(plant);
   const glm::vec3 size = glm::max(box.size(), glm::vec3(1e-6f));
   const float wide = size.x + size.z;
-  const float scale = std::min(static_cast<float>(kHeight - 2 * kMargin) / size.y,
-                               static_cast<float>(kMostWidth - 3 * kMargin) / wide);
-  const auto width = static_cast<int>(wide * scale) + 3 * kMargin;
-  const auto height = static_cast<int>(size.y * scale) + 2 * kMargin;
+  const float scale = std::min(static_cast<float>(kPictureHeight - 2 * kPictureMargin) / size.y,
+                               static_cast<float>(kMostWidth - 3 * kPictureMargin) / wide);
+  const auto width = static_cast<int>(wide * scale) + 3 * kPictureMargin;
+  const auto height = static_cast<int>(size.y * scale) + 2 * kPictureMargin;
   Image image(std::max(width, kLeastWidth), height);
   std::fill(image.rgba.begin(), image.rgba.end(), std::uint8_t{255});
-  const auto margin = static_cast<float>(kMargin);
+  const auto margin = static_cast<float>(kPictureMargin);
   const glm::vec3 foot(box.center().x, box.min.y, box.center().z);
-  std::array<View, 2> views = {
-      View(image, margin + 0.5f * size.x * scale, scale, foot, 0, 1.0f),
-      View(image, 2 * margin + (size.x + 0.5f * size.z) * scale, scale, foot, 2, -1.0f)};
-  for (View& view : views) {
+  std::array<SideView, 2> views = {
+      SideView(image, margin + 0.5f * size.x * scale, scale, foot, 0, 1.0f),
+      SideView(image, 2 * margin + (size.x + 0.5f * size.z) * scale, scale, foot, 2, -1.0f)};
+  for (SideView& view : views) {
     for (const Leaf& leaf : plant.leaves) view.dot(leaf.centroid, {0.45f, 0.70f, 0.35f}, 0.35f);
     for (int level = levelsOf(plant) - 1; level >= 0; --level)
       for (const Branch& branch : plant.branches)

@@ -10,7 +10,7 @@
 namespace verdure::app {
 namespace {
 
-constexpr int kWidth = 480, kHeight = 360;
+constexpr int kSceneWidth = 480, kSceneHeight = 360;
 constexpr int kRays = 16;  ///< for each vertex and side: enough for pictures of this size
 constexpr float kCamera_deg = 35.0f;
 constexpr float kTurbidities[] = {2.5f, 4.0f, 6.0f};  ///< the range that the thesis lights with
@@ -48,12 +48,13 @@ void addSkyScenes(Page& page, Progress& progress, Renderer& renderer) {
   renderer.setScene(scene);
 
   View view;
-  view.width = kWidth;
-  view.height = kHeight;
+  view.width = kSceneWidth;
+  view.height = kSceneHeight;
   view.terms = presetTerms("transfer");
   const auto look = [&](float azimuth_deg) {
-    view.camera = automaticCamera(scene, glm::radians(azimuth_deg), glm::radians(4.0f),
-                                  static_cast<float>(kWidth) / static_cast<float>(kHeight));
+    view.camera =
+        automaticCamera(scene, glm::radians(azimuth_deg), glm::radians(4.0f),
+                        static_cast<float>(kSceneWidth) / static_cast<float>(kSceneHeight));
   };
   const auto draw = [&](const std::string& name, const std::string& caption) {
     progress.show("drawing " + name);

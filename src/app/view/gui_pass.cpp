@@ -19,7 +19,7 @@ constexpr std::uint32_t kFragment[] = {
 constexpr vk::IndexType kIndexType =
     sizeof(ImDrawIdx) == 2 ? vk::IndexType::eUint16 : vk::IndexType::eUint32;
 
-struct Place {
+struct GuiPlace {
   glm::vec2 origin, clip_per_pixel;
 };
 
@@ -53,7 +53,7 @@ GuiPass::GuiPass(const gpu::Device& device, vk::Format target)
       set_layout_(device, {vk::DescriptorType::eCombinedImageSampler},
                   vk::ShaderStageFlagBits::eFragment),
       layout_(gpu::makePipelineLayout(device, std::array{*set_layout_.layout},
-                                      vk::ShaderStageFlagBits::eVertex, sizeof(Place))),
+                                      vk::ShaderStageFlagBits::eVertex, sizeof(GuiPlace))),
       sampler_(
           gpu::makeSampler(device, vk::Filter::eLinear, vk::SamplerAddressMode::eClampToEdge)) {
   pipeline_ =
@@ -132,9 +132,10 @@ void GuiPass::record(const vk::raii::CommandBuffer& commands, const gpu::Swapcha
     const float width = static_cast<float>(target.size.width);
     const float height = static_cast<float>(target.size.height);
     commands.setViewport(0, vk::Viewport{.width = width, .height = height, .maxDepth = 1.0f});
-    commands.pushConstants<Place>(*layout_, vk::ShaderStageFlagBits::eVertex, 0,
-                                  Place{{data.DisplayPos.x, data.DisplayPos.y},
-                                        {2.0f / data.DisplaySize.x, 2.0f / data.DisplaySize.y}});
+    commands.pushConstants<GuiPlace>(
+        *layout_, vk::ShaderStageFlagBits::eVertex, 0,
+        GuiPlace{{data.DisplayPos.x, data.DisplayPos.y},
+                 {2.0f / data.DisplaySize.x, 2.0f / data.DisplaySize.y}});
     std::uint32_t first_index = 0;
     std::int32_t first_vertex = 0;
     for (int n = 0; n < data.CmdListsCount; ++n) {

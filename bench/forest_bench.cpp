@@ -1,7 +1,7 @@
 // What a forest costs: trees that fill the view, alone and among many more that stand around and
-// behind it, in turns within one run; medians of the GPU's times. Usage:
+// behind it, with and without those that others hide; medians of the GPU's times. Usage:
 // forest_bench [seen = 1000] [all = 100000] [frames = 5] [width = 1280] [height = 720]
-// [picture.png]
+// [detail = 1] [picture.png]
 
 #include <algorithm>
 #include <chrono>
@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "render/frame.h"
 #include "verdure/error.h"
 #include "verdure/grow.h"
 #include "verdure/levels.h"
@@ -109,31 +110,43 @@ int run(int argc, char** argv) {
     few.places.push_back(places[inside[i].second]);
     many.places.push_back(places[inside[i].second]);
   }
-  Renderer renderer;
-  std::printf("%s, %d x %d, %zu trees in view\n", renderer.deviceName().c_str(), view.width,
-              view.height, few.places.size());
+  const gpu::Device device("", false);
+  FrameDrawer drawer(device);
+  std::printf("%s, %d x %d, %zu trees in view\n", device.name().c_str(), view.width, view.height,
+              few.places.size());
   for (const Forest* forest : {&few, &many}) {
     Scene scene;
     scene.forest = forest;
     const auto start = std::chrono::steady_clock::now();
-    renderer.setScene(scene);
+    GpuScene on_gpu(device, packScene(scene), drawer.sceneLayouts());
     const double loading = secondsSince(start);
-    std::vector<double> times, choosing;
-    Frame frame;
-    for (int i = -1; i < frames; ++i) {  // one to warm up
-      frame = renderer.render(view);
-      const FrameTimes& t = frame.times;
-      if (i < 0) continue;
-      times.push_back(t.motion_ms + t.shadow_ms + t.color_ms + t.tone_ms);
-      choosing.push_back(t.motion_ms);
+    std::printf("%7zu trees: loaded in %.2f s\n", forest->places.size(), loading);
+    drawer.forgetScene();
+    // With and without what trees hide of each other, in turns; the first round warms up.
+    std::vector<FrameTimes> times[2];
+    for (int i = 0; i < 2 * (frames + 1); ++i) {
+      drawer.tryHidden(i % 2 == 1);
+      const Frame frame = drawer.draw(on_gpu, view);
+      if (i > 1) times[i % 2].push_back(frame.times);
+      if (i < 2 * frames) continue;
+      const auto [meshes, impostors] = on_gpu.forest()->counts();
+      const auto middle = [&](auto of) {
+        std::vector<double> values;
+        for (const FrameTimes& t : times[i % 2]) values.push_back(of(t));
+        return median(std::move(values));
+      };
+      std::printf(
+          "  %s: %u meshes and %u impostors drawn; frame %.1f ms (choice and motion %.1f, the "
+          "sun's "
+          "maps %.1f, picture %.1f)\n",
+          i % 2 == 1 ? "all   " : "hiding", meshes, impostors, middle([](const FrameTimes& t) {
+            return t.motion_ms + t.shadow_ms + t.color_ms + t.tone_ms;
+          }),
+          middle([](const FrameTimes& t) { return t.motion_ms; }),
+          middle([](const FrameTimes& t) { return t.shadow_ms; }),
+          middle([](const FrameTimes& t) { return t.color_ms; }));
+      if (forest == &many && argc > 7 && i % 2 == 0) writePng(frame.image, argv[7]);
     }
-    std::printf(
-        "%7zu trees: loaded in %.2f s, frame %.1f ms (choice and motion %.1f, the last one's maps "
-        "of "
-        "the sun %.1f, picture %.1f)\n",
-        forest->places.size(), loading, median(times), median(choosing), frame.times.shadow_ms,
-        frame.times.color_ms);
-    if (forest == &many && argc > 7) writePng(frame.image, argv[7]);
   }
   return 0;
 }

@@ -215,6 +215,189 @@ TEST_F(ForestRender, ChoosesWhatBruteForceDoes) {
   }
 }
 
+/// Of a view of the picture, as look() makes it.
+shared::ForestView viewOf(const View& view) {
+  shared::ForestView data{};
+  data.clip =
+      clipFromWorld(view.camera, static_cast<float>(view.width) / static_cast<float>(view.height));
+  data.width = static_cast<std::uint32_t>(view.width);
+  data.height = static_cast<std::uint32_t>(view.height);
+  return data;
+}
+
+TEST(DepthTiles, HoldAllThatIsSeenOfACylinder) {
+  Random random(11);
+  int behind = 0, outside = 0;
+  for (int i = 0; i < 400; ++i) {
+    View view;
+    view.width = 200 + i;
+    view.height = 120 + 2 * i % 77;
+    view.camera = {{random.uniform(-9.0f, 9.0f), 3.0f, random.uniform(-9.0f, 9.0f)},
+                   {0.0f, random.uniform(0.0f, 5.0f), 0.0f},
+                   random.uniform(0.2f, 1.5f)};
+    const shared::ForestView data = viewOf(view);
+    const glm::vec3 middle(random.uniform(-30.0f, 30.0f), random.uniform(-5.0f, 9.0f),
+                           random.uniform(-30.0f, 30.0f));
+    const float radius = random.uniform(0.1f, 4.0f), height = random.uniform(0.1f, 6.0f);
+    const shared::DepthTiles tiles = shared::depthTilesOf(data, middle, height, radius);
+    if (tiles.depth > 1.0f) {
+      ++behind;
+      const glm::vec4 w(data.clip[0][3], data.clip[1][3], data.clip[2][3], data.clip[3][3]);
+      EXPECT_LT(glm::dot(w, glm::vec4(middle, 1.0f)), 1.01f * (radius + height));
+      continue;
+    }
+    float nearest = 0.0f;
+    for (int k = 0; k < 300; ++k) {
+      const float turn = random.uniform(0.0f, 6.2832f);
+      const glm::vec3 off(radius * std::cos(turn), height * random.uniform(-1.0f, 1.0f),
+                          radius * std::sin(turn));
+      const glm::vec4 clip = data.clip * glm::vec4(middle + off, 1.0f);
+      nearest = std::max(nearest, clip.z / clip.w);
+      const glm::vec2 at =
+          (glm::vec2(clip) / clip.w * 0.5f + 0.5f) * glm::vec2(data.width, data.height);
+      if (at.x < 0.0f || at.y < 0.0f || at.x >= float(data.width) || at.y >= float(data.height)) {
+        ++outside;
+        continue;
+      }
+      const auto x = static_cast<std::uint32_t>(at.x) / 8,
+                 row = static_cast<std::uint32_t>(at.y) / 8;
+      EXPECT_TRUE(x >= tiles.first_x && x < tiles.end_x && row >= tiles.first_y &&
+                  row < tiles.end_y);
+    }
+    EXPECT_LE(nearest, tiles.depth * 1.00001f);
+  }
+  EXPECT_GT(behind, 20);
+  EXPECT_GT(outside, 1000);
+}
+
+TEST_F(ForestRender, WhatOthersHideIsLeftOut) {
+  const Plant wall = whiteQuad();  // 2 m a side
+  Forest forest = forestOf(scattered(700, 90.0f, 12), true, true);
+  forest.kinds.push_back({&wall, nullptr, nullptr, nullptr});
+  Placement stands = placeAt({0.4f, 1.2f, 48.0f}, 0.0f, 9000);
+  stands.plant = 1;
+  stands.scale = 1.5f;
+  forest.places.push_back(stands);
+  GpuScene scene = packed(sceneOf(forest));
+  View view = this->view();
+  view.camera = {{0.0f, 1.5f, 54.0f}, {0.0f, 1.0f, 0.0f}, 0.7f};
+  view.wind = {.speed = 7.0f, .from = 0.4f, .gusts = 0.5f};
+  view.seconds = 2.0;
+  view.background.reset();
+  drawer_.tryHidden(true);
+  const Image all = drawer_.draw(scene, view).image;
+  const auto [meshes, far] = scene.forest()->counts();
+  drawer_.tryHidden(false);
+  const Image seen = drawer_.draw(scene, view).image;
+  const auto [seen_meshes, seen_far] = scene.forest()->counts();
+  EXPECT_EQ(all.rgba, seen.rgba);
+  EXPECT_LE(seen_meshes, meshes);
+
+  // What lies behind the wall with a tile around is gone; what looks out from behind it is not.
+  const shared::ForestView data = viewOf(view);
+  const auto corner = [&](float x, float y) {
+    const glm::vec4 clip =
+        data.clip * glm::vec4(stands.position + 1.5f * glm::vec3(x, y, 0.0f), 1.0f);
+    return (glm::vec2(clip) / clip.w * 0.5f + 0.5f) * glm::vec2(data.width, data.height) / 8.0f;
+  };
+  const glm::vec2 low = glm::min(corner(-1, -1), corner(1, 1)),
+                  high = glm::max(corner(-1, -1), corner(1, 1));
+  const Bounds rest = bounds(maple().plant);
+  std::uint32_t hidden = 0;
+  for (const Placement& place : forest.places) {
+    if (place.plant != 0) continue;
+    const shared::DepthTiles tiles = shared::depthTilesOf(
+        data, place.position + place.scale * glm::vec3(0.0f, rest.center().y, 0.0f),
+        0.6f * place.scale * rest.size().y, 0.8f * place.scale * glm::length(rest.size()));
+    hidden += tiles.depth < 1.0f && place.position.z < 40.0f &&
+                      float(tiles.first_x) > low.x + 1.0f && float(tiles.first_y) > low.y + 1.0f &&
+                      float(tiles.end_x) < high.x - 1.0f && float(tiles.end_y) < high.y - 1.0f
+                  ? 1
+                  : 0;
+  }
+  EXPECT_GT(hidden, 20u);
+  EXPECT_GE(meshes + far - seen_meshes - seen_far, hidden);
+}
+
+TEST_F(ForestRender, HidingChangesNoPicture) {
+  const Plant wall = whiteQuad();
+  Forest forest = forestOf(scattered(400, 110.0f, 13), true, true);
+  forest.kinds.push_back({&wall, nullptr, nullptr, nullptr});
+  for (std::size_t i = 0; i < forest.places.size(); i += 10) {
+    forest.places[i].plant = 1;
+    forest.places[i].scale = 5.0f;
+  }
+  GpuScene scene = packed(sceneOf(forest));
+  Random random(14);
+  std::uint32_t hidden = 0;
+  for (int i = 0; i < 3; ++i) {
+    View view = this->view();
+    view.width = 120;
+    view.height = 90;
+    view.wind = {.speed = 6.0f};
+    view.seconds = 1.0 + i;
+    view.camera.eye = {random.uniform(-30.0f, 30.0f), random.uniform(1.0f, 4.0f),
+                       random.uniform(-30.0f, 30.0f)};
+    view.camera.target =
+        view.camera.eye + glm::vec3(random.uniform(-1.0f, 1.0f), 0.0f, random.uniform(-1.0f, 1.0f));
+    drawer_.tryHidden(true);
+    const Image all = drawer_.draw(scene, view).image;
+    const auto [meshes, far] = scene.forest()->counts();
+    drawer_.tryHidden(false);
+    EXPECT_EQ(all.rgba, drawer_.draw(scene, view).image.rgba) << i;
+    const auto [seen_meshes, seen_far] = scene.forest()->counts();
+    hidden += meshes + far - seen_meshes - seen_far;
+  }
+  EXPECT_GT(hidden, 10u);
+}
+
+TEST_F(ForestRender, FarTreesComeFromWhereNearOnesDo) {
+  // A flag of a trunk, so that cards, which are flat and bend as trunks do, can be as exact as
+  // meshes.
+  Plant post = whiteQuad();
+  post.meshes[0] = {};
+  for (int i = 0; i < 40; ++i)
+    addQuad(post.meshes[0], {0, 0.05f * float(i), 0}, {0.4f, 0, 0}, {0, 0.05f, 0});
+  post.meshes[0].kind = PartKind::kFoliage;
+  post.meshes[0].branch_of_vertex.assign(post.meshes[0].positions.size(), 0);
+  post.branches = {{.points = {{{0, 0, 0}, 0.05f}, {{0, 2, 0}, 0.02f}}}};
+  const PlantMotion bends =
+      plantMotion(post, {.flexibility = 100.0f, .texture_width = 512, .texture_height = 256});
+  PlantLevels levels;
+  levels.impostor = bakeImpostor(post, nullptr, {.views = 9, .texels = 64, .samples = 4});
+  Forest forest;
+  forest.kinds = {{&post, nullptr, &bends, &levels}};
+  forest.places = {placeAt({0.3f, 0.0f, 0.0f}, 0.0f, 3)};
+  View view = this->view();
+  view.camera = {{0.0f, 1.0f, 14.0f}, {0.0f, 1.0f, 0.0f}, 0.2f};
+  view.last = {
+      {{0.05f, 1.02f, 14.0f}, {0.0f, 1.0f, 0.0f}, 0.2f}, {.speed = 5.0f, .from = 0.3f}, 2.0};
+  view.wind = {.speed = 9.0f, .from = 1.6f};
+  view.seconds = 2.4;
+  Frame frames[2];
+  for (const int far : {0, 1}) {
+    forest.detail = far == 1 ? 0.001f : 100.0f;
+    frames[far] = draw(sceneOf(forest), view);
+  }
+  const std::vector<glm::vec2>&near = frames[0].motion, &far = frames[1].motion;
+  int both = 0, one = 0;
+  float longest = 0.0f;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const bool in_near = glm::length(near[i] - near[0]) > 0.3f;
+    const bool in_far = glm::length(far[i] - far[0]) > 0.3f;
+    one += in_near != in_far ? 1 : 0;
+    if (!in_near || !in_far) continue;
+    ++both;
+    // A card bends in four straight pieces, so what leans rises a little otherwise.
+    EXPECT_NEAR(near[i].x, far[i].x, 0.25f) << i;
+    EXPECT_NEAR(near[i].y, far[i].y, 1.2f) << i;
+    longest = std::max(longest, glm::length(near[i] - near[0]));
+  }
+  EXPECT_GT(both, 500);
+  EXPECT_LT(one, both / 5);  // the border, covered in part
+  EXPECT_GT(longest, 2.0f);
+}
+
 TEST(PackedForest, KnowsHowFarItsTreesAreFew) {
   const Forest forest = forestOf(scattered(5000, 500.0f, 9), true, false);
   const PackedForest packed = packForest(forest);

@@ -5,6 +5,8 @@
 
 namespace verdure::gpu {
 
+inline constexpr vk::ImageAspectFlags kColorAspect = vk::ImageAspectFlagBits::eColor;
+
 /// The ways verdure uses images and buffers on the GPU. A barrier between two of them is complete:
 /// stages, accesses and layouts all follow from the use.
 enum class Use {

@@ -10,7 +10,6 @@ namespace verdure::gpu {
 namespace {
 
 constexpr std::uint64_t kForever = std::numeric_limits<std::uint64_t>::max();
-constexpr vk::ImageAspectFlags kColorAspect = vk::ImageAspectFlagBits::eColor;
 
 vk::SurfaceFormatKHR chooseFormat(const Device& device) {
   const auto formats = device.physical().getSurfaceFormatsKHR(device.surface());

@@ -7,7 +7,7 @@
 namespace verdure {
 namespace {
 
-constexpr std::uint32_t kFragment[] = {
+constexpr std::uint32_t kBlockerFragment[] = {
 #include "shaders/blocker_pass.frag.inc"
 };
 
@@ -21,7 +21,7 @@ BlockerPass::BlockerPass(const gpu::Device& device)
           vk::ShaderStageFlagBits::eFragment),
       layout_(gpu::makePipelineLayout(device, std::array{*set_layout_.layout},
                                       vk::ShaderStageFlagBits::eFragment, sizeof(std::uint32_t))),
-      pipeline_(makeFullscreenPipeline(device, kFragment, *layout_, kFormat)),
+      pipeline_(makeFullscreenPipeline(device, kBlockerFragment, *layout_, kFormat)),
       set_(device, set_layout_) {}
 
 void BlockerPass::setSources(const gpu::Texture& foliage_maps, const gpu::Texture& wood_maps,
@@ -39,15 +39,14 @@ void BlockerPass::setSources(const gpu::Texture& foliage_maps, const gpu::Textur
 }
 
 void BlockerPass::record(const vk::raii::CommandBuffer& commands, std::uint32_t count) const {
-  const vk::ImageAspectFlags aspect = vk::ImageAspectFlagBits::eColor;
-  gpu::imageBarrier(commands, *maps_->image, aspect, gpu::Use::kUndefined,
+  gpu::imageBarrier(commands, *maps_->image, gpu::kColorAspect, gpu::Use::kUndefined,
                     gpu::Use::kColorAttachment);
   for (std::uint32_t cascade = 0; cascade < count; ++cascade) {
     commands.pushConstants<std::uint32_t>(*layout_, vk::ShaderStageFlagBits::eFragment, 0, cascade);
     drawFullscreen(commands, *maps_->layer_views[cascade],
                    {maps_->request.width, maps_->request.height}, pipeline_, *layout_, *set_);
   }
-  gpu::imageBarrier(commands, *maps_->image, aspect, gpu::Use::kColorAttachment,
+  gpu::imageBarrier(commands, *maps_->image, gpu::kColorAspect, gpu::Use::kColorAttachment,
                     gpu::Use::kFragmentSampled);
 }
 

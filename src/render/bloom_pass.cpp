@@ -15,8 +15,6 @@ constexpr std::uint32_t kUp[] = {
 constexpr vk::Format kFormat = vk::Format::eR16G16B16A16Sfloat;
 constexpr std::size_t kMostLevels = 7;  // the widest spreads over some 2^8 pixels
 constexpr std::uint32_t kSmallest = 6;  // pixels across the coarsest level, about
-constexpr vk::ImageAspectFlags kColorAspect = vk::ImageAspectFlagBits::eColor;
-
 gpu::Texture makeLevel(const gpu::Device& device, std::uint32_t width, std::uint32_t height) {
   using Usage = vk::ImageUsageFlagBits;
   return gpu::makeTexture(device, {.format = kFormat,
@@ -63,7 +61,8 @@ void BloomPass::setSource(const gpu::Texture& source) {
 
 void BloomPass::record(const vk::raii::CommandBuffer& commands, bool on) const {
   const auto readable = [&](const gpu::Texture& texture, gpu::Use from) {
-    gpu::imageBarrier(commands, *texture.image, kColorAspect, from, gpu::Use::kFragmentSampled);
+    gpu::imageBarrier(commands, *texture.image, gpu::kColorAspect, from,
+                      gpu::Use::kFragmentSampled);
   };
   if (!on) {
     readable(result(), gpu::Use::kUndefined);

@@ -14,7 +14,6 @@
 namespace verdure {
 namespace {
 
-constexpr vk::ImageAspectFlags kColorAspect = vk::ImageAspectFlagBits::eColor;
 constexpr vk::ImageAspectFlags kDepthAspect = vk::ImageAspectFlagBits::eDepth;
 
 gpu::SetLayout makeFrameSet(const gpu::Device& device) {
@@ -273,9 +272,9 @@ shared::FrameUniforms FrameDrawer::makeUniforms(const GpuScene& scene, const Vie
 
 void FrameDrawer::recordColor(const vk::raii::CommandBuffer& commands, const GpuScene& scene,
                               const View& view, const DrawKind& kind) const {
-  gpu::imageBarrier(commands, *targets_->color.image, kColorAspect, gpu::Use::kUndefined,
+  gpu::imageBarrier(commands, *targets_->color.image, gpu::kColorAspect, gpu::Use::kUndefined,
                     gpu::Use::kColorAttachment);
-  gpu::imageBarrier(commands, *targets_->resolved.image, kColorAspect, gpu::Use::kUndefined,
+  gpu::imageBarrier(commands, *targets_->resolved.image, gpu::kColorAspect, gpu::Use::kUndefined,
                     gpu::Use::kColorAttachment);
   gpu::imageBarrier(commands, *targets_->depth.image, kDepthAspect, gpu::Use::kUndefined,
                     gpu::Use::kDepthAttachment);
@@ -287,12 +286,23 @@ void FrameDrawer::recordColor(const vk::raii::CommandBuffer& commands, const Gpu
   }
   const bool terrain = scene.terrain() != nullptr;
   const bool billboards = terrain && billboard_trial_;
-  beginColor(commands, view, true, !terrain || billboards);
-  // The drawn styles draw plants themselves.
-  if (view.style == Style::kPhoto)
-    plant_pass_.record(commands, layout_, *frame_set_, scene, view.terms, kind);
-  if (view.style == Style::kPhoto && scene.forest() != nullptr)
-    impostor_pass_.record(commands, *frame_set_, *scene.forest(), view.terms, kind);
+  const bool photo = view.style == Style::kPhoto;  // the drawn styles draw plants themselves
+  const GpuForest* forest = photo ? scene.forest() : nullptr;
+  beginColor(commands, view, true, (!terrain || billboards) && forest == nullptr);
+  if (photo) plant_pass_.record(commands, layout_, *frame_set_, scene, view.terms, kind, false);
+  if (forest != nullptr) {
+    commands.endRendering();
+    if (forest->hides())
+      forest_pass_.recordBehind(commands, *forest, targets_->depth);
+    else
+      gpu::imageBarrier(commands, *targets_->depth.image, kDepthAspect, gpu::Use::kDepthAttachment,
+                        gpu::Use::kDepthAttachment);
+    gpu::imageBarrier(commands, *targets_->color.image, gpu::kColorAspect,
+                      gpu::Use::kColorAttachment, gpu::Use::kColorAttachment);
+    beginColor(commands, view, false, !terrain || billboards);
+    plant_pass_.record(commands, layout_, *frame_set_, scene, view.terms, kind, true);
+    impostor_pass_.record(commands, *frame_set_, *forest, view.terms, kind);
+  }
   if (terrain && !billboards)
     grass_blades_.record(commands, *frame_set_, *scene.terrain(), view.terms, kind);
   backdrop_pass_.record(commands, layout_, *frame_set_, view.terms, kind,
@@ -302,7 +312,7 @@ void FrameDrawer::recordColor(const vk::raii::CommandBuffer& commands, const Gpu
   commands.endRendering();
   if (!terrain || billboards) return;
   grass_pass_.recordDepthRange(commands, targets_->depth);
-  gpu::imageBarrier(commands, *targets_->color.image, kColorAspect, gpu::Use::kColorAttachment,
+  gpu::imageBarrier(commands, *targets_->color.image, gpu::kColorAspect, gpu::Use::kColorAttachment,
                     gpu::Use::kColorAttachment);
   beginColor(commands, view, false, true);
   grass_pass_.record(commands, *frame_set_, *scene.terrain(), view.terms, kind);
@@ -345,14 +355,14 @@ void FrameDrawer::beginColor(const vk::raii::CommandBuffer& commands, const View
 
 void FrameDrawer::recordTone(const vk::raii::CommandBuffer& commands, const View& view,
                              float units) const {
-  gpu::imageBarrier(commands, *targets_->color.image, kColorAspect, gpu::Use::kColorAttachment,
+  gpu::imageBarrier(commands, *targets_->color.image, gpu::kColorAspect, gpu::Use::kColorAttachment,
                     gpu::Use::kFragmentSampled);
-  gpu::imageBarrier(commands, *targets_->resolved.image, kColorAspect, gpu::Use::kColorAttachment,
-                    gpu::Use::kComputeSampled);
+  gpu::imageBarrier(commands, *targets_->resolved.image, gpu::kColorAspect,
+                    gpu::Use::kColorAttachment, gpu::Use::kComputeSampled);
   if (!view.exposure.ev || !view.exposure.white)
     exposure_pass_.record(commands, look::kLeastLuminance * units);
-  gpu::imageBarrier(commands, *targets_->resolved.image, kColorAspect, gpu::Use::kComputeSampled,
-                    gpu::Use::kFragmentSampled);
+  gpu::imageBarrier(commands, *targets_->resolved.image, gpu::kColorAspect,
+                    gpu::Use::kComputeSampled, gpu::Use::kFragmentSampled);
   bloom_pass_.record(commands, view.bloom > 0.0f);
   tone_pass_.record(
       commands, view.style == Style::kPhoto ? targets_->picture : style_pass_->backdrop(),
@@ -390,8 +400,11 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view, const gpu::Texture* t
     inspect_pass_.prepare(*device_, layout_, scene, view.terms, inspection_);
   if (scene.forest() != nullptr) {
     scene.forest()->look(view, cascades,
-                         scene.terrain() != nullptr ? &scene.terrain()->terrain() : nullptr);
+                         scene.terrain() != nullptr ? &scene.terrain()->terrain() : nullptr,
+                         photo && inspection_ == Inspection::kNothing && !hidden_trial_);
+    forest_pass_.prepare(*scene.forest(), targets_->depth);
     impostor_pass_.prepare(view.terms, kind, depth_maps);
+    if (view.last) impostor_pass_.prepareVelocity(VelocityPass::kFormat);
   }
   if (!photo && !style_pass_)
     style_pass_.emplace(*device_, layout_, *motion_pass_.layouts().vertex.layout);
@@ -425,7 +438,7 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view, const gpu::Texture* t
     } else {
       shadow_pass_.record(commands, layout_, *frame_set_, scene, *shadow_maps_, impostor_pass_,
                           cascade_count, view.terms.shadow);
-      gpu::imageBarrier(commands, *foliage_maps_->image, kColorAspect, gpu::Use::kUndefined,
+      gpu::imageBarrier(commands, *foliage_maps_->image, gpu::kColorAspect, gpu::Use::kUndefined,
                         gpu::Use::kFragmentSampled);
     }
     blocker_pass_.record(commands, depth_maps ? cascade_count : 0);
@@ -438,7 +451,8 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view, const gpu::Texture* t
       style_pass_->record(commands, *frame_set_, scene, view, impostor_pass_, targets_->depth,
                           targets_->picture);
     timers_.stamp(commands, 4);
-    if (view.last) velocity_pass_.record(commands, layout_, *frame_set_, scene, grass_pass_);
+    if (view.last)
+      velocity_pass_.record(commands, layout_, *frame_set_, scene, impostor_pass_, grass_pass_);
     if (target != nullptr)
       targets_->recordHandOver(commands, *target);
     else

@@ -3,7 +3,7 @@
 namespace verdure {
 namespace {
 
-constexpr std::uint32_t kVertex[] = {
+constexpr std::uint32_t kFullscreenVertex[] = {
 #include "shaders/fullscreen.vert.inc"
 };
 
@@ -12,7 +12,7 @@ constexpr std::uint32_t kVertex[] = {
 vk::raii::Pipeline makeFullscreenPipeline(const gpu::Device& device, gpu::SpirV fragment,
                                           vk::PipelineLayout layout, vk::Format target,
                                           const gpu::Constants& constants) {
-  return gpu::makeGraphicsPipeline(device, {.vertex = kVertex,
+  return gpu::makeGraphicsPipeline(device, {.vertex = kFullscreenVertex,
                                             .fragment = fragment,
                                             .constants = constants,
                                             .layout = layout,

@@ -24,6 +24,9 @@ constexpr std::uint32_t kScan[] = {
 constexpr std::uint32_t kList[] = {
 #include "shaders/forest_list.comp.inc"
 };
+constexpr std::uint32_t kDepthTiles[] = {
+#include "shaders/depth_tiles.comp.inc"
+};
 
 /// Trees farther from the eye cast no shadow, m.
 constexpr float kShadowRange_m = 400.0f;
@@ -56,7 +59,8 @@ ForestLayouts::ForestLayouts(const gpu::Device& device)
               vk::DescriptorType::eStorageBuffer, vk::DescriptorType::eStorageBuffer,
               vk::DescriptorType::eStorageBuffer, vk::DescriptorType::eStorageBuffer,
               vk::DescriptorType::eStorageBuffer, vk::DescriptorType::eStorageBuffer,
-              vk::DescriptorType::eStorageBuffer, vk::DescriptorType::eStorageBuffer},
+              vk::DescriptorType::eStorageBuffer, vk::DescriptorType::eStorageBuffer,
+              vk::DescriptorType::eStorageBuffer},
              vk::ShaderStageFlagBits::eCompute),
       impostor(
           device,
@@ -70,7 +74,9 @@ ForestLayouts::ForestLayouts(const gpu::Device& device)
 GpuForest::GpuForest(const gpu::Device& device, gpu::Upload& upload, PackedForest packed,
                      std::span<const vk::DrawIndexedIndirectCommand> draws,
                      const ForestLayouts& layouts)
-    : packed_(std::move(packed)), draw_count_(static_cast<std::uint32_t>(draws.size())) {
+    : device_(&device),
+      packed_(std::move(packed)),
+      draw_count_(static_cast<std::uint32_t>(draws.size())) {
   using Usage = vk::BufferUsageFlagBits;
   constexpr auto kStorage = Usage::eStorageBuffer;
   const auto kinds = static_cast<std::uint32_t>(packed_.kinds.size());
@@ -124,12 +130,16 @@ GpuForest::GpuForest(const gpu::Device& device, gpu::Upload& upload, PackedFores
     shared::ForestView& view = view_data_[v];
     view.first_seat = v == kMotionView ? 0 : seat;
     // Where levels give way to each other, a tree is drawn as both.
-    view.seats = v == kMotionView ? 0 : (v == kPicture ? 2 : 1) * meshes + always;
+    const bool picture = v == kPicture || v == kBehind;
+    view.seats = v == kMotionView ? 0 : (picture ? 2 : 1) * meshes + (v == kBehind ? 0 : always);
     view.first_far = far;
-    view.fars = v == kMotionView ? 0
-                : v == kPicture  ? places
-                                 : std::min(places, kMostForestCasters);
-    view.fades = v == kPicture ? 1 : 0;
+    view.fars = v == kMotionView || v == kPicture ? 0
+                : v == kBehind                    ? places
+                                                  : std::min(places, kMostForestCasters);
+    view.fades = picture ? 1 : 0;
+    view.part = v == kPicture  ? shared::kForestFront
+                : v == kBehind ? shared::kForestBehind
+                               : shared::kForestAll;
     view.motion = v == kMotionView ? 1 : 0;
     seat += view.seats;
     far += view.fars;
@@ -213,6 +223,8 @@ void GpuForest::setWind(const std::optional<Wind>& wind) {
       box = {glm::min(box.min, moved.min), glm::max(box.max, moved.max)};
     }
     data.sphere = glm::vec4(box.center(), 0.5f * glm::length(box.size()));
+    data.half_height = 0.5f * box.size().y;
+    data.half_width = 0.5f * glm::length(glm::vec2(box.size().x, box.size().z));
     data.moves = moves_ && kind.tables != nullptr ? 1 : 0;
     const glm::vec2 aside = glm::max(glm::abs(glm::vec2(box.min.x, box.min.z)),
                                      glm::abs(glm::vec2(box.max.x, box.max.z)));
@@ -226,7 +238,8 @@ void GpuForest::setWind(const std::optional<Wind>& wind) {
   }
 }
 
-void GpuForest::look(const View& view, std::span<const Cascade> cascades, const Terrain* terrain) {
+void GpuForest::look(const View& view, std::span<const Cascade> cascades, const Terrain* terrain,
+                     bool hides) {
   const glm::vec3& eye = view.camera.eye;
   if (terrain != nullptr && horizon_eye_ != eye) {
     const std::vector<float> horizon = terrainHorizon(*terrain, eye);
@@ -248,6 +261,10 @@ void GpuForest::look(const View& view, std::span<const Cascade> cascades, const 
     if (far.moves != 0) {
       far.moment = momentOf(view.wind, view.seconds, kind.tables->wind_extent);
       far.whole = motionTime(view.seconds).whole;
+      const Wind& last_wind = view.last ? view.last->wind : view.wind;
+      const double last_seconds = view.last ? view.last->seconds : view.seconds;
+      far.last_moment = momentOf(last_wind, last_seconds, kind.tables->wind_extent);
+      far.last_whole = motionTime(last_seconds).whole;
     }
   }
   std::memcpy(impostors_.memory.mapped(), impostor_data_.data(),
@@ -271,9 +288,14 @@ void GpuForest::look(const View& view, std::span<const Cascade> cascades, const 
     shared::ForestView& data = view_data_[v];
     data.eye = glm::vec4(eye, meshes);
     data.farthest = std::numeric_limits<float>::max();
-    data.horizon = v == kPicture && terrain != nullptr ? 1 : 0;
+    const bool picture = v == kPicture || v == kBehind;
+    data.horizon = picture && terrain != nullptr ? 1 : 0;
+    data.hides = v == kBehind && hides ? 1 : 0;
+    data.clip = clip;
+    data.width = static_cast<std::uint32_t>(view.width);
+    data.height = static_cast<std::uint32_t>(view.height);
     for (glm::vec4& plane : data.planes) plane = all;
-    if (v == kPicture) {
+    if (picture) {
       const glm::vec4 w = rowOf(clip, 3);
       int i = 0;
       for (const int axis : {0, 1})
@@ -293,6 +315,13 @@ void GpuForest::look(const View& view, std::span<const Cascade> cascades, const 
     }
   }
   std::memcpy(views_.memory.mapped(), view_data_.data(), sizeof(view_data_));
+  const std::size_t tiles = std::size_t{shared::depthTiles(view_data_[kBehind].width)} *
+                            shared::depthTiles(view_data_[kBehind].height);
+  const std::size_t bytes = (tiles + tiles / 64) * sizeof(float);
+  if (depth_tiles_.size == bytes) return;
+  depth_tiles_ = gpu::makeBuffer(*device_, bytes, vk::BufferUsageFlagBits::eStorageBuffer,
+                                 gpu::MemoryUse::kDevice);
+  set_->setBuffer(12, depth_tiles_);
 }
 
 Bounds GpuForest::casterBounds(const glm::vec3& eye) const {
@@ -334,14 +363,16 @@ vk::DeviceSize GpuForest::motionCommand(std::uint32_t kind) const {
 }
 
 std::pair<std::uint32_t, std::uint32_t> GpuForest::counts() const {
-  std::vector<glm::uvec2> ranges(packed_.classes);
+  std::vector<glm::uvec2> ranges(std::size_t{kViews} * packed_.classes);
   std::memcpy(ranges.data(), ranges_.memory.mapped(), ranges.size() * sizeof(glm::uvec2));
   std::pair<std::uint32_t, std::uint32_t> sum(0, 0);
-  for (const PackedForestKind& kind : packed_.kinds) {
-    const std::size_t meshes = kind.grain_m.size();
-    for (std::size_t i = 0; i < meshes; ++i) sum.first += ranges[kind.first_class + i].y;
-    sum.second += ranges[kind.first_class + meshes].y;
-  }
+  for (const std::uint32_t view : {kPicture, kBehind})
+    for (const PackedForestKind& kind : packed_.kinds) {
+      const std::size_t meshes = kind.grain_m.size(),
+                        first = std::size_t{view} * packed_.classes + kind.first_class;
+      for (std::size_t i = 0; i < meshes; ++i) sum.first += ranges[first + i].y;
+      sum.second += ranges[first + meshes].y;
+    }
   return sum;
 }
 
@@ -354,69 +385,125 @@ std::size_t GpuForest::bytes() const {
 
 ForestPass::ForestPass(const gpu::Device& device)
     : layouts_(device),
+      tiles_set_layout_(
+          device, {vk::DescriptorType::eCombinedImageSampler, vk::DescriptorType::eStorageBuffer},
+          vk::ShaderStageFlagBits::eCompute),
       layout_(gpu::makePipelineLayout(device, std::array{*layouts_.choice.layout},
                                       vk::ShaderStageFlagBits::eCompute, sizeof(ChoiceJob))),
+      tiles_layout_(gpu::makePipelineLayout(device, std::array{*tiles_set_layout_.layout},
+                                            vk::ShaderStageFlagBits::eCompute, 0)),
       count_(gpu::makeComputePipeline(device, kCount, *layout_)),
       scan_(gpu::makeComputePipeline(device, kScan, *layout_)),
-      list_(gpu::makeComputePipeline(device, kList, *layout_)) {}
+      list_(gpu::makeComputePipeline(device, kList, *layout_)),
+      tiles_(gpu::makeComputePipeline(device, kDepthTiles, *tiles_layout_)),
+      tiles_set_(device, tiles_set_layout_),
+      sampler_(
+          gpu::makeSampler(device, vk::Filter::eNearest, vk::SamplerAddressMode::eClampToEdge)) {}
 
-void ForestPass::record(const vk::raii::CommandBuffer& commands, const GpuForest& forest) const {
+void ForestPass::prepare(const GpuForest& forest, const gpu::Texture& depth) {
+  tiles_set_.setTexture(0, depth, *sampler_);
+  tiles_set_.setBuffer(1, forest.depth_tiles_);
+}
+
+void ForestPass::begin(const vk::raii::CommandBuffer& commands, const GpuForest& forest) const {
   using gpu::Use;
   const auto turn = [&commands](const gpu::Buffer& buffer, Use from, Use to) {
     gpu::bufferBarrier(commands, *buffer.buffer, from, to);
   };
-  // An upload leaves buffers as vertex input.
-  for (const gpu::Buffer* buffer : {&forest.places_, &forest.clusters_, &forest.draw_classes_}) {
-    turn(*buffer, Use::kVertexInput, Use::kComputeStorage);
-    turn(*buffer, Use::kVertexInput, Use::kVertexStorage);
-  }
-  turn(forest.commands_, Use::kVertexInput, Use::kComputeStorage);
   turn(forest.commands_, Use::kIndirect, Use::kComputeStorage);
   turn(forest.seats_, Use::kVertexInput, Use::kComputeStorage);
   for (const gpu::Buffer* buffer : {&forest.fars_, &forest.ranges_})
     turn(*buffer, Use::kVertexStorage, Use::kComputeStorage);
-  for (const gpu::Buffer* buffer : {&forest.counts_, &forest.slots_})
+  // What moves trees reads seats, too.
+  for (const gpu::Buffer* buffer :
+       {&forest.counts_, &forest.slots_, &forest.seats_, &forest.ranges_})
     turn(*buffer, Use::kComputeStorage, Use::kComputeStorage);
+}
 
+void ForestPass::choose(const vk::raii::CommandBuffer& commands, const GpuForest& forest,
+                        std::uint32_t first_view, std::uint32_t views) const {
+  using gpu::Use;
+  const auto settle = [&commands](const gpu::Buffer& buffer) {
+    gpu::bufferBarrier(commands, *buffer.buffer, Use::kComputeStorage, Use::kComputeStorage);
+  };
   const auto kinds = static_cast<std::uint32_t>(forest.packed_.kinds.size());
   const std::uint32_t far_commands = GpuForest::kViews * forest.draw_count_ * kDrawWords;
-  ChoiceJob job{.first_view = 0,
-                .place_count = static_cast<std::uint32_t>(forest.packed_.places.size()),
-                .cluster_count = static_cast<std::uint32_t>(forest.packed_.clusters.size()),
-                .class_count = forest.packed_.classes,
-                .draw_count = forest.draw_count_,
-                .kind_count = kinds,
-                .first_far_command = far_commands,
-                .first_motion_command = far_commands + GpuForest::kViews * kinds * kFarWords,
-                .motion_seats = forest.packed_.motion_seats};
+  const ChoiceJob job{.first_view = first_view,
+                      .place_count = static_cast<std::uint32_t>(forest.packed_.places.size()),
+                      .cluster_count = static_cast<std::uint32_t>(forest.packed_.clusters.size()),
+                      .class_count = forest.packed_.classes,
+                      .draw_count = forest.draw_count_,
+                      .kind_count = kinds,
+                      .first_far_command = far_commands,
+                      .first_motion_command = far_commands + GpuForest::kViews * kinds * kFarWords,
+                      .motion_seats = forest.packed_.motion_seats};
   commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *layout_, 0, {**forest.set_},
                               nullptr);
-  const auto choose = [&](std::uint32_t first_view, std::uint32_t views) {
-    job.first_view = first_view;
-    commands.pushConstants<ChoiceJob>(*layout_, vk::ShaderStageFlagBits::eCompute, 0, job);
-    commands.bindPipeline(vk::PipelineBindPoint::eCompute, *count_);
-    commands.dispatch(job.cluster_count, views, 1);
-    turn(forest.counts_, Use::kComputeStorage, Use::kComputeStorage);
-    commands.bindPipeline(vk::PipelineBindPoint::eCompute, *scan_);
-    commands.dispatch(views, 1, 1);
-    turn(forest.counts_, Use::kComputeStorage, Use::kComputeStorage);
-    turn(forest.ranges_, Use::kComputeStorage, Use::kComputeStorage);
-    commands.bindPipeline(vk::PipelineBindPoint::eCompute, *list_);
-    commands.dispatch(job.cluster_count, views, 1);
+  commands.pushConstants<ChoiceJob>(*layout_, vk::ShaderStageFlagBits::eCompute, 0, job);
+  commands.bindPipeline(vk::PipelineBindPoint::eCompute, *count_);
+  commands.dispatch(job.cluster_count, views, 1);
+  settle(forest.counts_);
+  commands.bindPipeline(vk::PipelineBindPoint::eCompute, *scan_);
+  commands.dispatch(views, 1, 1);
+  settle(forest.counts_);
+  settle(forest.ranges_);
+  commands.bindPipeline(vk::PipelineBindPoint::eCompute, *list_);
+  commands.dispatch(job.cluster_count, views, 1);
+  settle(forest.counts_);
+  settle(forest.ranges_);
+}
+
+void ForestPass::end(const vk::raii::CommandBuffer& commands, const GpuForest& forest) const {
+  using gpu::Use;
+  const auto turn = [&commands](const gpu::Buffer& buffer, Use to) {
+    gpu::bufferBarrier(commands, *buffer.buffer, Use::kComputeStorage, to);
   };
-  if (forest.moves()) {  // first: what is drawn reads where its motion is
-    choose(GpuForest::kMotionView, 1);
-    turn(forest.slots_, Use::kComputeStorage, Use::kComputeStorage);
-    turn(forest.ranges_, Use::kComputeStorage, Use::kComputeStorage);
-    turn(forest.counts_, Use::kComputeStorage, Use::kComputeStorage);
-  }
-  choose(0, forest.view_count_);
-  turn(forest.commands_, Use::kComputeStorage, Use::kIndirect);
-  turn(forest.seats_, Use::kComputeStorage, Use::kVertexInput);
-  turn(forest.seats_, Use::kComputeStorage, Use::kComputeStorage);  // for their motion
+  turn(forest.commands_, Use::kIndirect);
+  turn(forest.seats_, Use::kVertexInput);
+  turn(forest.seats_, Use::kComputeStorage);  // for their motion
   for (const gpu::Buffer* buffer : {&forest.fars_, &forest.ranges_})
-    turn(*buffer, Use::kComputeStorage, Use::kVertexStorage);
-  turn(forest.ranges_, Use::kComputeStorage, Use::kHostRead);
+    turn(*buffer, Use::kVertexStorage);
+  turn(forest.ranges_, Use::kHostRead);
+}
+
+void ForestPass::record(const vk::raii::CommandBuffer& commands, const GpuForest& forest) const {
+  using gpu::Use;
+  // An upload leaves buffers as vertex input.
+  for (const gpu::Buffer* buffer : {&forest.places_, &forest.clusters_, &forest.draw_classes_}) {
+    gpu::bufferBarrier(commands, *buffer->buffer, Use::kVertexInput, Use::kComputeStorage);
+    gpu::bufferBarrier(commands, *buffer->buffer, Use::kVertexInput, Use::kVertexStorage);
+  }
+  gpu::bufferBarrier(commands, *forest.commands_.buffer, Use::kVertexInput, Use::kComputeStorage);
+  begin(commands, forest);
+  if (forest.moves()) {  // first: what is drawn reads where its motion is
+    choose(commands, forest, GpuForest::kMotionView, 1);
+    for (const gpu::Buffer* buffer : {&forest.slots_, &forest.ranges_})
+      gpu::bufferBarrier(commands, *buffer->buffer, Use::kComputeStorage, Use::kComputeStorage);
+  }
+  choose(commands, forest, 0, forest.view_count_);
+  if (!forest.hides()) choose(commands, forest, GpuForest::kBehind, 1);
+  end(commands, forest);
+}
+
+void ForestPass::recordBehind(const vk::raii::CommandBuffer& commands, const GpuForest& forest,
+                              const gpu::Texture& depth) const {
+  using gpu::Use;
+  gpu::imageBarrier(commands, *depth.image, vk::ImageAspectFlagBits::eDepth, Use::kDepthAttachment,
+                    Use::kComputeSampled);
+  gpu::bufferBarrier(commands, *forest.depth_tiles_.buffer, Use::kComputeStorage,
+                     Use::kComputeStorage);
+  commands.bindPipeline(vk::PipelineBindPoint::eCompute, *tiles_);
+  commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *tiles_layout_, 0, {*tiles_set_},
+                              nullptr);
+  const shared::ForestView& view = forest.view_data_[GpuForest::kBehind];
+  commands.dispatch(shared::depthTiles(view.width) / 8, shared::depthTiles(view.height) / 8, 1);
+  gpu::bufferBarrier(commands, *forest.depth_tiles_.buffer, Use::kComputeStorage,
+                     Use::kComputeStorage);
+  gpu::imageBarrier(commands, *depth.image, vk::ImageAspectFlagBits::eDepth, Use::kComputeSampled,
+                    Use::kDepthAttachment);
+  begin(commands, forest);
+  choose(commands, forest, GpuForest::kBehind, 1);
+  end(commands, forest);
 }
 
 }  // namespace verdure

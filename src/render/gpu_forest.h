@@ -25,8 +25,9 @@ struct ForestLayouts {
 /// sun's maps' and the one around the eye whose trees move.
 class GpuForest {
  public:
+  /// The picture's trees are in two parts: meshes, and the impostors that these may hide.
   static constexpr std::uint32_t kPicture = 0, kMotionView = 1 + shared::kMostCascades,
-                                 kViews = kMotionView + 1;
+                                 kBehind = kMotionView + 1, kViews = kBehind + 1;
 
   /// `draws`: of the forest, in their order, without numbers of instances. Throws Error where the
   /// device's storage buffers are too small.
@@ -37,8 +38,10 @@ class GpuForest {
                  std::span<const gpu::Buffer> texels);
 
   /// Of the frame that comes: levels by the camera and the picture's size, places by the views.
-  /// `terrain`: whose hills hide trees, or null.
-  void look(const View& view, std::span<const Cascade> cascades, const Terrain* terrain);
+  /// `terrain`: whose hills hide trees, or null. `hides`: so do its meshes.
+  void look(const View& view, std::span<const Cascade> cascades, const Terrain* terrain,
+            bool hides);
+  bool hides() const { return view_data_[kBehind].hides != 0; }
   /// In this wind or weaker ones; none: at rest.
   void setWind(const std::optional<Wind>& wind);
   /// What casts shadows around `eye`, at rest or in the wind that was set.
@@ -69,13 +72,14 @@ class GpuForest {
     std::optional<gpu::DescriptorSet> set;
   };
 
+  const gpu::Device* device_;
   PackedForest packed_;
   std::uint32_t draw_count_ = 0;
   std::vector<shared::ForestKindData> kind_data_;
   std::vector<shared::ImpostorKind> impostor_data_;
   std::vector<Kind> kinds_;
   gpu::Buffer places_, clusters_, kind_buffer_, views_, counts_, ranges_, commands_, draw_classes_,
-      seats_, fars_, slots_, impostors_, horizon_;
+      seats_, fars_, slots_, impostors_, horizon_, depth_tiles_;
   std::optional<gpu::DescriptorSet> set_;
   vk::raii::Sampler sampler_ = nullptr;
   std::array<shared::ForestView, kViews> view_data_{};
@@ -93,12 +97,26 @@ class ForestPass {
  public:
   explicit ForestPass(const gpu::Device& device);
   const ForestLayouts& layouts() const { return layouts_; }
+  /// Of a forest that has looked; `depth`: of the picture's samples.
+  void prepare(const GpuForest& forest, const gpu::Texture& depth);
+  /// The impostors of the picture as well, unless meshes hide them.
   void record(const vk::raii::CommandBuffer& commands, const GpuForest& forest) const;
+  /// With the samples' depths of what was drawn, in use kDepthAttachment before and after.
+  void recordBehind(const vk::raii::CommandBuffer& commands, const GpuForest& forest,
+                    const gpu::Texture& depth) const;
 
  private:
+  void begin(const vk::raii::CommandBuffer& commands, const GpuForest& forest) const;
+  void choose(const vk::raii::CommandBuffer& commands, const GpuForest& forest,
+              std::uint32_t first_view, std::uint32_t views) const;
+  void end(const vk::raii::CommandBuffer& commands, const GpuForest& forest) const;
+
   ForestLayouts layouts_;
-  vk::raii::PipelineLayout layout_;
-  vk::raii::Pipeline count_, scan_, list_;
+  gpu::SetLayout tiles_set_layout_;
+  vk::raii::PipelineLayout layout_, tiles_layout_;
+  vk::raii::Pipeline count_, scan_, list_, tiles_;
+  gpu::DescriptorSet tiles_set_;
+  vk::raii::Sampler sampler_;
 };
 
 }  // namespace verdure

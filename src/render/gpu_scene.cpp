@@ -2,6 +2,7 @@
 
 #include "render/packed_light.h"
 #include "render/scene.h"
+#include "render/terms.h"
 
 namespace verdure {
 
@@ -193,6 +194,12 @@ void GpuScene::record(const vk::raii::CommandBuffer& commands, vk::PipelineLayou
                        draw.first_instance);
 }
 
+void GpuScene::recordSeen(const vk::raii::CommandBuffer& commands, vk::PipelineLayout layout,
+                          vk::DescriptorSet frame_set, const Draw& draw) const {
+  record(commands, layout, frame_set, draw, GpuForest::kPicture);
+  if (draw.forest) record(commands, layout, frame_set, draw, GpuForest::kBehind);
+}
+
 std::vector<vk::VertexInputBindingDescription> GpuScene::bindings(bool transfer) {
   return {
       {.binding = 0, .stride = sizeof(glm::vec3)},
@@ -213,6 +220,10 @@ std::vector<vk::VertexInputAttributeDescription> GpuScene::attributes() {
           {.location = 6, .binding = 4, .format = Format::eR16G16B16A16Sfloat, .offset = 0},
           {.location = 7, .binding = 4, .format = Format::eR16G16B16A16Sfloat, .offset = 8},
           {.location = 8, .binding = 3, .format = Format::eR32G32B32A32Uint, .offset = 48}};
+}
+
+gpu::Constants GpuScene::shapeConstants(const Draw& draw) {
+  return termConstants({}, {.alpha_test = draw.alpha_test, .moving = draw.moving});
 }
 
 std::vector<vk::VertexInputAttributeDescription> GpuScene::shapeAttributes() {

@@ -13,16 +13,16 @@
 namespace verdure {
 namespace {
 
-constexpr std::uint32_t kGroundVertex[] = {
+constexpr std::uint32_t kGrassGroundVertex[] = {
 #include "shaders/terrain.vert.inc"
 };
-constexpr std::uint32_t kGroundFragment[] = {
+constexpr std::uint32_t kGrassGroundFragment[] = {
 #include "shaders/grass_ground.frag.inc"
 };
-constexpr std::uint32_t kVertex[] = {
+constexpr std::uint32_t kGrassBillboardsVertex[] = {
 #include "shaders/grass_billboards.vert.inc"
 };
-constexpr std::uint32_t kFragment[] = {
+constexpr std::uint32_t kGrassBillboardsFragment[] = {
 #include "shaders/grass_billboards.frag.inc"
 };
 
@@ -205,8 +205,8 @@ void GrassBillboards::prepare(const GpuTerrain& terrain, const View& view, const
   auto found = pipelines_.find(constants);
   if (found == pipelines_.end()) {
     gpu::GraphicsRequest ground{
-        .vertex = kGroundVertex,
-        .fragment = kGroundFragment,
+        .vertex = kGrassGroundVertex,
+        .fragment = kGrassGroundFragment,
         .constants = constants,
         .layout = *layout_,
         .bindings = {{.binding = 0,
@@ -218,8 +218,8 @@ void GrassBillboards::prepare(const GpuTerrain& terrain, const View& view, const
         .color = FrameLayout::kColor,
         .depth = FrameLayout::kDepth,
         .samples = FrameLayout::kSamples};
-    gpu::GraphicsRequest slice{.vertex = kVertex,
-                               .fragment = kFragment,
+    gpu::GraphicsRequest slice{.vertex = kGrassBillboardsVertex,
+                               .fragment = kGrassBillboardsFragment,
                                .constants = constants,
                                .layout = *layout_,
                                .color = FrameLayout::kColor,

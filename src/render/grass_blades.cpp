@@ -13,10 +13,10 @@ namespace {
 constexpr std::uint32_t kChoice[] = {
 #include "shaders/grass_blades.comp.inc"
 };
-constexpr std::uint32_t kVertex[] = {
+constexpr std::uint32_t kGrassBladesVertex[] = {
 #include "shaders/grass_blades.vert.inc"
 };
-constexpr std::uint32_t kFragment[] = {
+constexpr std::uint32_t kGrassBladesFragment[] = {
 #include "shaders/grass_blades.frag.inc"
 };
 constexpr std::uint32_t kGroupSize = 64;  // as in grass_blades.comp
@@ -113,8 +113,8 @@ void GrassBlades::prepare(const GpuTerrain& terrain, const View& view, const Dra
   gpu::Constants constants = constantsOf(view.terms, kind);
   if (layers_.empty() || pipelines_.contains(constants)) return;
   vk::raii::Pipeline pipeline =
-      gpu::makeGraphicsPipeline(*device_, {.vertex = kVertex,
-                                           .fragment = kFragment,
+      gpu::makeGraphicsPipeline(*device_, {.vertex = kGrassBladesVertex,
+                                           .fragment = kGrassBladesFragment,
                                            .constants = constants,
                                            .layout = *layout_,
                                            .color = FrameLayout::kColor,

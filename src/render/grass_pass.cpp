@@ -14,16 +14,16 @@
 namespace verdure {
 namespace {
 
-constexpr std::uint32_t kVertex[] = {
+constexpr std::uint32_t kGrassVertex[] = {
 #include "shaders/terrain.vert.inc"
 };
-constexpr std::uint32_t kFragment[] = {
+constexpr std::uint32_t kGrassFragment[] = {
 #include "shaders/grass_pass.frag.inc"
 };
 constexpr std::uint32_t kVelocity[] = {
 #include "shaders/terrain_velocity.frag.inc"
 };
-constexpr std::uint32_t kDepthRange[] = {
+constexpr std::uint32_t kDepthRangeFragment[] = {
 #include "shaders/depth_range.frag.inc"
 };
 constexpr vk::Format kRangeFormat = vk::Format::eR32G32Sfloat;
@@ -134,8 +134,8 @@ GrassPass::GrassPass(const gpu::Device& device, vk::DescriptorSetLayout frame_se
                     vk::ShaderStageFlagBits::eFragment),
       layout_(gpu::makePipelineLayout(device, std::array{frame_set, *set_layout_.layout})),
       depth_pipeline_layout_(gpu::makePipelineLayout(device, std::array{*depth_layout_.layout})),
-      depth_pipeline_(
-          makeFullscreenPipeline(device, kDepthRange, *depth_pipeline_layout_, kRangeFormat)),
+      depth_pipeline_(makeFullscreenPipeline(device, kDepthRangeFragment, *depth_pipeline_layout_,
+                                             kRangeFormat)),
       depth_set_(device, depth_layout_),
       nearest_(
           gpu::makeSampler(device, vk::Filter::eNearest, vk::SamplerAddressMode::eClampToEdge)) {}
@@ -225,7 +225,7 @@ void GrassPass::prepare(GpuTerrain& terrain, const View& view, const gpu::Textur
 gpu::GraphicsRequest GrassPass::requestOf(gpu::SpirV fragment,
                                           const gpu::Constants& constants) const {
   return {
-      .vertex = kVertex,
+      .vertex = kGrassVertex,
       .fragment = fragment,
       .constants = constants,
       .layout = *layout_,
@@ -239,7 +239,7 @@ gpu::GraphicsRequest GrassPass::requestOf(gpu::SpirV fragment,
 
 void GrassPass::addPipeline(const gpu::Constants& constants) {
   if (pipelines_.contains(constants)) return;
-  gpu::GraphicsRequest request = requestOf(kFragment, constants);
+  gpu::GraphicsRequest request = requestOf(kGrassFragment, constants);
   request.color = FrameLayout::kColor;
   request.samples = FrameLayout::kSamples;
   request.blend = gpu::Blend::kOver;

@@ -7,8 +7,6 @@ namespace verdure {
 namespace {
 
 constexpr float kLargest = 65000.0f;
-constexpr vk::ImageAspectFlags kColorAspect = vk::ImageAspectFlagBits::eColor;
-
 }  // namespace
 
 HalfTexture::HalfTexture(const gpu::Device& device, std::uint32_t width, std::uint32_t height)
@@ -31,13 +29,13 @@ void HalfTexture::set(int x, int y, const glm::vec3& color) {
 }
 
 void HalfTexture::record(const vk::raii::CommandBuffer& commands) const {
-  gpu::imageBarrier(commands, *texture_.image, kColorAspect, gpu::Use::kUndefined,
+  gpu::imageBarrier(commands, *texture_.image, gpu::kColorAspect, gpu::Use::kUndefined,
                     gpu::Use::kTransferTarget);
   commands.copyBufferToImage(
       *staging_.buffer, *texture_.image, vk::ImageLayout::eTransferDstOptimal,
-      vk::BufferImageCopy{.imageSubresource = {.aspectMask = kColorAspect, .layerCount = 1},
+      vk::BufferImageCopy{.imageSubresource = {.aspectMask = gpu::kColorAspect, .layerCount = 1},
                           .imageExtent = {texture_.request.width, texture_.request.height, 1}});
-  gpu::imageBarrier(commands, *texture_.image, kColorAspect, gpu::Use::kTransferTarget,
+  gpu::imageBarrier(commands, *texture_.image, gpu::kColorAspect, gpu::Use::kTransferTarget,
                     gpu::Use::kDrawSampled);
 }
 

@@ -3,14 +3,17 @@
 namespace verdure {
 namespace {
 
-constexpr std::uint32_t kVertex[] = {
+constexpr std::uint32_t kImpostorVertex[] = {
 #include "shaders/impostor.vert.inc"
 };
-constexpr std::uint32_t kFragment[] = {
+constexpr std::uint32_t kImpostorFragment[] = {
 #include "shaders/impostor.frag.inc"
 };
 constexpr std::uint32_t kDrawn[] = {
 #include "shaders/style_impostor.frag.inc"
+};
+constexpr std::uint32_t kImpostorVelocity[] = {
+#include "shaders/impostor_velocity.frag.inc"
 };
 constexpr std::uint32_t kShadow[] = {
 #include "shaders/impostor_shadow.frag.inc"
@@ -45,8 +48,8 @@ void ImpostorPass::prepare(const Terms& terms, const DrawKind& kind, bool light_
   gpu::Constants constants = constantsOf(terms, kind);
   if (!pictures_.contains(constants)) {
     vk::raii::Pipeline pipeline =
-        gpu::makeGraphicsPipeline(*device_, {.vertex = kVertex,
-                                             .fragment = kFragment,
+        gpu::makeGraphicsPipeline(*device_, {.vertex = kImpostorVertex,
+                                             .fragment = kImpostorFragment,
                                              .constants = constants,
                                              .layout = *layout_,
                                              .color = FrameLayout::kColor,
@@ -55,7 +58,7 @@ void ImpostorPass::prepare(const Terms& terms, const DrawKind& kind, bool light_
     pictures_.emplace(std::move(constants), std::move(pipeline));
   }
   if (shadows_.contains(light_depth)) return;
-  gpu::GraphicsRequest request{.vertex = kVertex,
+  gpu::GraphicsRequest request{.vertex = kImpostorVertex,
                                .fragment = kShadow,
                                .layout = *layout_,
                                .depth = FrameLayout::kDepth,
@@ -72,8 +75,8 @@ void ImpostorPass::prepare(const Terms& terms, const DrawKind& kind, bool light_
 }
 
 void ImpostorPass::draw(const vk::raii::CommandBuffer& commands, vk::PipelineLayout layout,
-                        vk::DescriptorSet frame_set, const GpuForest& forest,
-                        std::uint32_t view) const {
+                        vk::DescriptorSet frame_set, const GpuForest& forest, std::uint32_t view,
+                        bool velocity) const {
   for (std::uint32_t k = 0; k < forest.kinds_.size(); ++k) {
     if (!forest.kinds_[k].set) continue;
     const shared::ForestView& data = forest.view_data_[view];
@@ -82,8 +85,9 @@ void ImpostorPass::draw(const vk::raii::CommandBuffer& commands, vk::PipelineLay
         .range = view * forest.packed_.classes + forest.kind_data_[k].first_class +
                  forest.kind_data_[k].meshes,
         .first_far = data.first_far,
-        .cascade = view == GpuForest::kPicture ? shared::kForestNone : view - 1,
-        .most = data.eye.w};
+        .cascade = view == GpuForest::kBehind ? shared::kForestNone : view - 1,
+        .most = data.eye.w,
+        .velocity = velocity ? 1u : 0u};
     commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, layout, 0,
                                 {frame_set, **forest.kinds_[k].set}, nullptr);
     commands.pushConstants<shared::ImpostorJob>(
@@ -95,7 +99,7 @@ void ImpostorPass::draw(const vk::raii::CommandBuffer& commands, vk::PipelineLay
 void ImpostorPass::record(const vk::raii::CommandBuffer& commands, vk::DescriptorSet frame_set,
                           const GpuForest& forest, const Terms& terms, const DrawKind& kind) const {
   commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pictures_.at(constantsOf(terms, kind)));
-  draw(commands, *layout_, frame_set, forest, GpuForest::kPicture);
+  draw(commands, *layout_, frame_set, forest, GpuForest::kBehind);
 }
 
 void ImpostorPass::prepareDrawn(const Terms& terms, const DrawKind& kind,
@@ -108,7 +112,7 @@ void ImpostorPass::prepareDrawn(const Terms& terms, const DrawKind& kind,
   gpu::Constants constants = constantsOf(terms, kind);
   if (drawn_.contains(constants)) return;
   vk::raii::Pipeline pipeline =
-      gpu::makeGraphicsPipeline(*device_, {.vertex = kVertex,
+      gpu::makeGraphicsPipeline(*device_, {.vertex = kImpostorVertex,
                                            .fragment = kDrawn,
                                            .constants = constants,
                                            .layout = *drawn_layout_,
@@ -125,7 +129,22 @@ void ImpostorPass::recordDrawn(const vk::raii::CommandBuffer& commands, vk::Desc
   commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *drawn_.at(constantsOf(terms, kind)));
   commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *drawn_layout_, 2, {ground_set},
                               nullptr);
-  draw(commands, *drawn_layout_, frame_set, forest, GpuForest::kPicture);
+  draw(commands, *drawn_layout_, frame_set, forest, GpuForest::kBehind);
+}
+
+void ImpostorPass::prepareVelocity(vk::Format way) {
+  if (*velocity_) return;
+  velocity_ = gpu::makeGraphicsPipeline(*device_, {.vertex = kImpostorVertex,
+                                                   .fragment = kImpostorVelocity,
+                                                   .layout = *layout_,
+                                                   .color = way,
+                                                   .depth = FrameLayout::kDepth});
+}
+
+void ImpostorPass::recordVelocity(const vk::raii::CommandBuffer& commands,
+                                  vk::DescriptorSet frame_set, const GpuForest& forest) const {
+  commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *velocity_);
+  draw(commands, *layout_, frame_set, forest, GpuForest::kBehind, true);
 }
 
 void ImpostorPass::recordShadows(const vk::raii::CommandBuffer& commands,

@@ -5,10 +5,10 @@
 namespace verdure {
 namespace {
 
-constexpr std::uint32_t kVertex[] = {
+constexpr std::uint32_t kInspectVertex[] = {
 #include "shaders/inspect_pass.vert.inc"
 };
-constexpr std::uint32_t kFragment[] = {
+constexpr std::uint32_t kInspectFragment[] = {
 #include "shaders/inspect_pass.frag.inc"
 };
 
@@ -36,8 +36,8 @@ void InspectPass::prepare(const gpu::Device& device, const FrameLayout& layout,
       return attribute.location == 6 || attribute.location == 7;
     });
     vk::raii::Pipeline pipeline =
-        gpu::makeGraphicsPipeline(device, {.vertex = kVertex,
-                                           .fragment = kFragment,
+        gpu::makeGraphicsPipeline(device, {.vertex = kInspectVertex,
+                                           .fragment = kInspectFragment,
                                            .constants = key.second,
                                            .layout = *layout.pipeline,
                                            .bindings = GpuScene::bindings(draw.transfer),
@@ -58,7 +58,7 @@ void InspectPass::record(const vk::raii::CommandBuffer& commands, const FrameLay
     if (!draw.seen) continue;
     commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
                           *pipelines_.at(keyOf(draw, terms, what)));
-    scene.record(commands, *layout.pipeline, frame_set, draw);
+    scene.recordSeen(commands, *layout.pipeline, frame_set, draw);
   }
 }
 

@@ -3,7 +3,7 @@
 namespace verdure {
 namespace {
 
-constexpr std::uint32_t kVertex[] = {
+constexpr std::uint32_t kLightDepthVertex[] = {
 #include "shaders/shadow_pass.vert.inc"
 };
 constexpr std::uint32_t kWood[] = {
@@ -29,7 +29,7 @@ void LightDepthPass::prepare(const gpu::Device& device, const FrameLayout& layou
   for (const Draw& draw : scene.draws()) {
     gpu::Constants constants = constantsOf(draw, terms);
     if (pipelines_.contains(constants)) continue;
-    gpu::GraphicsRequest request{.vertex = kVertex,
+    gpu::GraphicsRequest request{.vertex = kLightDepthVertex,
                                  .constants = constants,
                                  .layout = *layout.pipeline,
                                  .bindings = GpuScene::bindings(false),
@@ -56,10 +56,9 @@ void LightDepthPass::record(const vk::raii::CommandBuffer& commands, const Frame
                             const ImpostorPass& impostors, std::uint32_t count,
                             const Terms& terms) const {
   const vk::ImageAspectFlags depth_aspect = vk::ImageAspectFlagBits::eDepth;
-  const vk::ImageAspectFlags color_aspect = vk::ImageAspectFlagBits::eColor;
   gpu::imageBarrier(commands, *wood_maps.image, depth_aspect, gpu::Use::kUndefined,
                     gpu::Use::kDepthAttachment);
-  gpu::imageBarrier(commands, *foliage_maps.image, color_aspect, gpu::Use::kUndefined,
+  gpu::imageBarrier(commands, *foliage_maps.image, gpu::kColorAspect, gpu::Use::kUndefined,
                     gpu::Use::kColorAttachment);
   for (std::uint32_t cascade = 0; cascade < count; ++cascade) {
     const vk::RenderingAttachmentInfo foliage{
@@ -91,7 +90,7 @@ void LightDepthPass::record(const vk::raii::CommandBuffer& commands, const Frame
   }
   gpu::imageBarrier(commands, *wood_maps.image, depth_aspect, gpu::Use::kDepthAttachment,
                     gpu::Use::kFragmentSampled);
-  gpu::imageBarrier(commands, *foliage_maps.image, color_aspect, gpu::Use::kColorAttachment,
+  gpu::imageBarrier(commands, *foliage_maps.image, gpu::kColorAspect, gpu::Use::kColorAttachment,
                     gpu::Use::kFragmentSampled);
 }
 

@@ -3,10 +3,10 @@
 namespace verdure {
 namespace {
 
-constexpr std::uint32_t kVertex[] = {
+constexpr std::uint32_t kPlantVertex[] = {
 #include "shaders/plant_pass.vert.inc"
 };
-constexpr std::uint32_t kFragment[] = {
+constexpr std::uint32_t kPlantFragment[] = {
 #include "shaders/plant_pass.frag.inc"
 };
 
@@ -49,8 +49,8 @@ void PlantPass::prepare(const gpu::Device& device, const FrameLayout& layout, co
     auto key = keyOf(draw, terms, kind);
     if (pipelines_.contains(key)) continue;
     vk::raii::Pipeline pipeline =
-        gpu::makeGraphicsPipeline(device, {.vertex = kVertex,
-                                           .fragment = kFragment,
+        gpu::makeGraphicsPipeline(device, {.vertex = kPlantVertex,
+                                           .fragment = kPlantFragment,
                                            .constants = key.second,
                                            .layout = *layout.pipeline,
                                            .bindings = GpuScene::bindings(draw.transfer),
@@ -64,14 +64,15 @@ void PlantPass::prepare(const gpu::Device& device, const FrameLayout& layout, co
 
 void PlantPass::record(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,
                        vk::DescriptorSet frame_set, const GpuScene& scene, const Terms& terms,
-                       const DrawKind& kind) const {
+                       const DrawKind& kind, bool behind) const {
   if (scene.draws().empty()) return;
   scene.bindVertices(commands, terms.normal);
   for (const Draw& draw : scene.draws()) {
-    if (!draw.seen) continue;
+    if (!draw.seen || (behind && !draw.forest)) continue;
     commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
                           *pipelines_.at(keyOf(draw, terms, kind)));
-    scene.record(commands, *layout.pipeline, frame_set, draw);
+    scene.record(commands, *layout.pipeline, frame_set, draw,
+                 behind ? GpuForest::kBehind : GpuForest::kPicture);
   }
 }
 

@@ -16,9 +16,10 @@ class PlantPass {
   /// `kind`: what the sky is drawn with.
   void prepare(const gpu::Device& device, const FrameLayout& layout, const GpuScene& scene,
                const Terms& terms, const DrawKind& kind);
+  /// `behind`: meshes of trees that become impostors; else all but these.
   void record(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,
               vk::DescriptorSet frame_set, const GpuScene& scene, const Terms& terms,
-              const DrawKind& kind) const;
+              const DrawKind& kind, bool behind) const;
 
  private:
   /// By whether there are transfer vectors, and the terms.

@@ -150,8 +150,10 @@ class GpuScene {
   const std::vector<Draw>& draws() const { return draws_; }
   /// Draws one of them with the bound pipeline, of `layout`. `view`: whose trees of a forest.
   void record(const vk::raii::CommandBuffer& commands, vk::PipelineLayout layout,
-              vk::DescriptorSet frame_set, const Draw& draw,
-              std::uint32_t view = GpuForest::kPicture) const;
+              vk::DescriptorSet frame_set, const Draw& draw, std::uint32_t view) const;
+  /// All of it that the picture shows.
+  void recordSeen(const vk::raii::CommandBuffer& commands, vk::PipelineLayout layout,
+                  vk::DescriptorSet frame_set, const Draw& draw) const;
   /// From now on; without wind, plants that could move are drawn as those that cannot.
   void setWind(const Wind& wind, const std::optional<Wind>& last);
   /// Of all that may move in the wind that was set, but for the forest.
@@ -180,6 +182,8 @@ class GpuScene {
   static std::vector<vk::VertexInputAttributeDescription> attributes();
   /// Of these, positions, texture coordinates and instances.
   static std::vector<vk::VertexInputAttributeDescription> shapeAttributes();
+  /// What shaders of such passes are specialised by.
+  static gpu::Constants shapeConstants(const Draw& draw);
 
  private:
   gpu::Buffer positions_, leaf_normals_, crown_normals_, uvs_, indices_, instances_;

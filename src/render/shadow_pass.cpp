@@ -3,25 +3,21 @@
 namespace verdure {
 namespace {
 
-constexpr std::uint32_t kVertex[] = {
+constexpr std::uint32_t kShadowVertex[] = {
 #include "shaders/shadow_pass.vert.inc"
 };
-constexpr std::uint32_t kFragment[] = {
+constexpr std::uint32_t kShadowFragment[] = {
 #include "shaders/shadow_pass.frag.inc"
 };
-
-gpu::Constants constantsOf(const Draw& draw) {
-  return termConstants({}, {.alpha_test = draw.alpha_test, .moving = draw.moving});
-}
 
 }  // namespace
 
 void ShadowPass::prepare(const gpu::Device& device, const FrameLayout& layout,
                          const GpuScene& scene) {
   for (const Draw& draw : scene.draws()) {
-    gpu::Constants constants = constantsOf(draw);
+    gpu::Constants constants = GpuScene::shapeConstants(draw);
     if (pipelines_.contains(constants)) continue;
-    gpu::GraphicsRequest request{.vertex = kVertex,
+    gpu::GraphicsRequest request{.vertex = kShadowVertex,
                                  .constants = constants,
                                  .layout = *layout.pipeline,
                                  .bindings = GpuScene::bindings(false),
@@ -29,7 +25,7 @@ void ShadowPass::prepare(const gpu::Device& device, const FrameLayout& layout,
                                  .depth = FrameLayout::kDepth,
                                  .depth_compare = vk::CompareOp::eLess,
                                  .depth_bias_slope = 1.5f};
-    if (draw.alpha_test) request.fragment = kFragment;
+    if (draw.alpha_test) request.fragment = kShadowFragment;
     pipelines_.emplace(std::move(constants), gpu::makeGraphicsPipeline(device, request));
   }
 }
@@ -71,7 +67,8 @@ void ShadowPass::drawCasters(const vk::raii::CommandBuffer& commands, const Fram
   commands.pushConstants<std::uint32_t>(*layout.pipeline, vk::ShaderStageFlagBits::eVertex,
                                         sizeof(shared::DrawUniforms), cascade);
   for (const Draw& draw : scene.draws()) {
-    commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipelines_.at(constantsOf(draw)));
+    commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
+                          *pipelines_.at(GpuScene::shapeConstants(draw)));
     scene.record(commands, *layout.pipeline, frame_set, draw, cascade + 1);
   }
 }

@@ -3,13 +3,12 @@
 namespace verdure {
 namespace {
 
-constexpr std::uint32_t kVertex[] = {
+constexpr std::uint32_t kStyleLayersVertex[] = {
 #include "shaders/plant_pass.vert.inc"
 };
-constexpr std::uint32_t kFragment[] = {
+constexpr std::uint32_t kStyleLayersFragment[] = {
 #include "shaders/style_layers.frag.inc"
 };
-constexpr vk::ImageAspectFlags kColorAspect = vk::ImageAspectFlagBits::eColor;
 using Usage = vk::ImageUsageFlagBits;
 
 /// The ambient coefficient counts where normals are scaled by it.
@@ -52,8 +51,8 @@ void StyleLayers::prepare(const GpuScene& scene, const View& view, const gpu::Te
     gpu::Constants constants = constantsOf(draw, view);
     if (!draw.seen || pipelines_.contains(constants)) continue;
     pipelines_.emplace(constants,
-                       gpu::makeGraphicsPipeline(*device_, {.vertex = kVertex,
-                                                            .fragment = kFragment,
+                       gpu::makeGraphicsPipeline(*device_, {.vertex = kStyleLayersVertex,
+                                                            .fragment = kStyleLayersFragment,
                                                             .constants = constants,
                                                             .layout = *layout_,
                                                             .bindings = GpuScene::bindings(false),
@@ -102,10 +101,10 @@ void StyleLayers::record(const vk::raii::CommandBuffer& commands, vk::Descriptor
     std::array<vk::RenderingAttachmentInfo, 3> colors;
     for (std::size_t i = 0; i < colors.size(); ++i) {
       // The samples of the layer before have been read by its resolve.
-      gpu::imageBarrier(commands, *samples_[i].image, kColorAspect,
+      gpu::imageBarrier(commands, *samples_[i].image, gpu::kColorAspect,
                         foliage ? gpu::Use::kUndefined : gpu::Use::kColorAttachment,
                         gpu::Use::kColorAttachment);
-      gpu::imageBarrier(commands, *results[i]->image, kColorAspect, gpu::Use::kUndefined,
+      gpu::imageBarrier(commands, *results[i]->image, gpu::kColorAspect, gpu::Use::kUndefined,
                         gpu::Use::kColorAttachment);
       colors[i] = vk::RenderingAttachmentInfo{
           .imageView = *samples_[i].view,
@@ -143,14 +142,14 @@ void StyleLayers::record(const vk::raii::CommandBuffer& commands, vk::Descriptor
                             *pipelines_.at(constantsOf(draw, view)));
       commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout_, 3, {*ground_set_},
                                   nullptr);
-      scene.record(commands, *layout_, frame_set, draw);
+      scene.recordSeen(commands, *layout_, frame_set, draw);
     }
     if (foliage && scene.forest() != nullptr)
       impostors.recordDrawn(commands, frame_set, *ground_set_, *scene.forest(), view.terms,
                             {.ambient_source = ambientOf(view)});
     commands.endRendering();
     for (const gpu::Texture* result : results)
-      gpu::imageBarrier(commands, *result->image, kColorAspect, gpu::Use::kColorAttachment,
+      gpu::imageBarrier(commands, *result->image, gpu::kColorAspect, gpu::Use::kColorAttachment,
                         gpu::Use::kFragmentSampled);
   }
 }

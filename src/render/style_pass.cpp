@@ -28,7 +28,6 @@ constexpr std::uint32_t kToon[] = {
 constexpr std::uint32_t kWatercolor[] = {
 #include "shaders/style_watercolor.frag.inc"
 };
-constexpr vk::ImageAspectFlags kColorAspect = vk::ImageAspectFlagBits::eColor;
 constexpr vk::ImageAspectFlags kDepthAspect = vk::ImageAspectFlagBits::eDepth;
 constexpr vk::Format kFormat = StyleLayers::kFormat;
 constexpr int kPaperSize = 512;
@@ -202,7 +201,7 @@ void StylePass::recordBlur(const vk::raii::CommandBuffer& commands, const Blur& 
     commands.pushConstants<shared::BlurUniforms>(*blur_pipeline_layout_,
                                                  vk::ShaderStageFlagBits::eFragment, 0, uniforms);
     drawFullscreen(commands, target, blur_, *blur_pipeline_layout_, *set);
-    gpu::imageBarrier(commands, *target.image, kColorAspect, gpu::Use::kColorAttachment,
+    gpu::imageBarrier(commands, *target.image, gpu::kColorAspect, gpu::Use::kColorAttachment,
                       gpu::Use::kFragmentSampled);
   };
   draw(blur.across, *blur.from_source, blur.first);
@@ -214,7 +213,7 @@ void StylePass::record(const vk::raii::CommandBuffer& commands, vk::DescriptorSe
                        const gpu::Texture& ground_depth, const gpu::Texture& target) const {
   gpu::imageBarrier(commands, *ground_depth.image, kDepthAspect, gpu::Use::kDepthAttachment,
                     gpu::Use::kFragmentSampled);
-  gpu::imageBarrier(commands, *backdrop_.image, kColorAspect, gpu::Use::kColorAttachment,
+  gpu::imageBarrier(commands, *backdrop_.image, gpu::kColorAspect, gpu::Use::kColorAttachment,
                     gpu::Use::kFragmentSampled);
   layers_.record(commands, frame_set, scene, view, impostors);
   const auto push = [&](const vk::raii::PipelineLayout& layout) {
@@ -226,7 +225,7 @@ void StylePass::record(const vk::raii::CommandBuffer& commands, vk::DescriptorSe
     const gpu::Texture& merged = normals ? normals_ : depths_;
     drawFullscreen(commands, merged, normals ? merge_normals_ : merge_depths_,
                    *merge_pipeline_layout_, *merge_set_);
-    gpu::imageBarrier(commands, *merged.image, kColorAspect, gpu::Use::kColorAttachment,
+    gpu::imageBarrier(commands, *merged.image, gpu::kColorAspect, gpu::Use::kColorAttachment,
                       gpu::Use::kFragmentSampled);
   }
   // What each style reads.

@@ -11,8 +11,6 @@ namespace verdure {
 namespace {
 
 using Usage = vk::ImageUsageFlagBits;
-constexpr vk::ImageAspectFlags kColorAspect = vk::ImageAspectFlagBits::eColor;
-
 gpu::Texture makeTarget(const gpu::Device& device, std::uint32_t width, std::uint32_t height,
                         vk::Format format, vk::SampleCountFlagBits samples,
                         vk::ImageUsageFlags usage) {
@@ -23,14 +21,14 @@ gpu::Texture makeTarget(const gpu::Device& device, std::uint32_t width, std::uin
                            .height = height,
                            .samples = samples,
                            .usage = usage,
-                           .aspect = depth ? vk::ImageAspectFlagBits::eDepth : kColorAspect});
+                           .aspect = depth ? vk::ImageAspectFlagBits::eDepth : gpu::kColorAspect});
 }
 
 void recordCopy(const vk::raii::CommandBuffer& commands, const gpu::Texture& from,
                 const gpu::Buffer& to) {
   commands.copyImageToBuffer(
       *from.image, vk::ImageLayout::eTransferSrcOptimal, *to.buffer,
-      vk::BufferImageCopy{.imageSubresource = {.aspectMask = kColorAspect, .layerCount = 1},
+      vk::BufferImageCopy{.imageSubresource = {.aspectMask = gpu::kColorAspect, .layerCount = 1},
                           .imageExtent = {from.request.width, from.request.height, 1}});
   gpu::bufferBarrier(commands, *to.buffer, gpu::Use::kTransferTarget, gpu::Use::kHostRead);
 }
@@ -57,7 +55,7 @@ bool Targets::fits(int width, int height) const {
 }
 
 void Targets::recordReadback(const vk::raii::CommandBuffer& commands, bool hdr) {
-  gpu::imageBarrier(commands, *picture.image, kColorAspect, gpu::Use::kColorAttachment,
+  gpu::imageBarrier(commands, *picture.image, gpu::kColorAspect, gpu::Use::kColorAttachment,
                     gpu::Use::kTransferSource);
   recordCopy(commands, picture, picture_readback_);
   if (!hdr) return;
@@ -65,24 +63,24 @@ void Targets::recordReadback(const vk::raii::CommandBuffer& commands, bool hdr) 
     hdr_readback_ = gpu::makeBuffer(
         *device_, vk::DeviceSize{resolved.request.width} * resolved.request.height * 8,
         vk::BufferUsageFlagBits::eTransferDst, gpu::MemoryUse::kFromGpu);
-  gpu::imageBarrier(commands, *resolved.image, kColorAspect, gpu::Use::kFragmentSampled,
+  gpu::imageBarrier(commands, *resolved.image, gpu::kColorAspect, gpu::Use::kFragmentSampled,
                     gpu::Use::kTransferSource);
   recordCopy(commands, resolved, *hdr_readback_);
 }
 
 void Targets::recordHandOver(const vk::raii::CommandBuffer& commands,
                              const gpu::Texture& to) const {
-  gpu::imageBarrier(commands, *picture.image, kColorAspect, gpu::Use::kColorAttachment,
+  gpu::imageBarrier(commands, *picture.image, gpu::kColorAspect, gpu::Use::kColorAttachment,
                     gpu::Use::kTransferSource);
-  gpu::imageBarrier(commands, *to.image, kColorAspect, gpu::Use::kFragmentSampled,
+  gpu::imageBarrier(commands, *to.image, gpu::kColorAspect, gpu::Use::kFragmentSampled,
                     gpu::Use::kTransferTarget);
-  const vk::ImageSubresourceLayers layers{.aspectMask = kColorAspect, .layerCount = 1};
+  const vk::ImageSubresourceLayers layers{.aspectMask = gpu::kColorAspect, .layerCount = 1};
   commands.copyImage(*picture.image, vk::ImageLayout::eTransferSrcOptimal, *to.image,
                      vk::ImageLayout::eTransferDstOptimal,
                      vk::ImageCopy{.srcSubresource = layers,
                                    .dstSubresource = layers,
                                    .extent = {picture.request.width, picture.request.height, 1}});
-  gpu::imageBarrier(commands, *to.image, kColorAspect, gpu::Use::kTransferTarget,
+  gpu::imageBarrier(commands, *to.image, gpu::kColorAspect, gpu::Use::kTransferTarget,
                     gpu::Use::kFragmentSampled);
 }
 

@@ -5,7 +5,7 @@
 namespace verdure {
 namespace {
 
-constexpr std::uint32_t kFragment[] = {
+constexpr std::uint32_t kToneFragment[] = {
 #include "shaders/tone_pass.frag.inc"
 };
 
@@ -19,7 +19,7 @@ TonePass::TonePass(const gpu::Device& device)
       layout_(gpu::makePipelineLayout(device, std::array{*set_layout_.layout},
                                       vk::ShaderStageFlagBits::eFragment,
                                       sizeof(shared::ToneUniforms))),
-      pipeline_(makeFullscreenPipeline(device, kFragment, *layout_, kFormat)),
+      pipeline_(makeFullscreenPipeline(device, kToneFragment, *layout_, kFormat)),
       nearest_(
           gpu::makeSampler(device, vk::Filter::eNearest, vk::SamplerAddressMode::eClampToEdge)),
       linear_(gpu::makeSampler(device, vk::Filter::eLinear, vk::SamplerAddressMode::eClampToEdge)),

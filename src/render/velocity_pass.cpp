@@ -9,29 +9,25 @@
 namespace verdure {
 namespace {
 
-constexpr std::uint32_t kVertex[] = {
+constexpr std::uint32_t kVelocityVertex[] = {
 #include "shaders/velocity_pass.vert.inc"
 };
-constexpr std::uint32_t kFragment[] = {
+constexpr std::uint32_t kVelocityFragment[] = {
 #include "shaders/velocity_pass.frag.inc"
 };
 /// Of pixels without plants; no vertex comes this far.
 constexpr float kNothing = 1e30f;
-
-gpu::Constants constantsOf(const Draw& draw) {
-  return termConstants({}, {.alpha_test = draw.alpha_test, .moving = draw.moving});
-}
 
 }  // namespace
 
 void VelocityPass::prepare(const gpu::Device& device, const FrameLayout& layout,
                            const GpuScene& scene, int width, int height) {
   for (const Draw& draw : scene.draws()) {
-    gpu::Constants constants = constantsOf(draw);
+    gpu::Constants constants = GpuScene::shapeConstants(draw);
     if (pipelines_.contains(constants)) continue;
     pipelines_.emplace(constants,
-                       gpu::makeGraphicsPipeline(device, {.vertex = kVertex,
-                                                          .fragment = kFragment,
+                       gpu::makeGraphicsPipeline(device, {.vertex = kVelocityVertex,
+                                                          .fragment = kVelocityFragment,
                                                           .constants = constants,
                                                           .layout = *layout.pipeline,
                                                           .bindings = GpuScene::bindings(false),
@@ -57,9 +53,8 @@ void VelocityPass::prepare(const gpu::Device& device, const FrameLayout& layout,
 
 void VelocityPass::record(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,
                           vk::DescriptorSet frame_set, const GpuScene& scene,
-                          const GrassPass& grass) const {
-  const vk::ImageAspectFlags color_aspect = vk::ImageAspectFlagBits::eColor;
-  gpu::imageBarrier(commands, *ways_->image, color_aspect, gpu::Use::kUndefined,
+                          const ImpostorPass& impostors, const GrassPass& grass) const {
+  gpu::imageBarrier(commands, *ways_->image, gpu::kColorAspect, gpu::Use::kUndefined,
                     gpu::Use::kColorAttachment);
   gpu::imageBarrier(commands, *depth_->image, vk::ImageAspectFlagBits::eDepth, gpu::Use::kUndefined,
                     gpu::Use::kDepthAttachment);
@@ -89,16 +84,18 @@ void VelocityPass::record(const vk::raii::CommandBuffer& commands, const FrameLa
   if (!scene.draws().empty()) scene.bindVertices(commands, NormalSource::kLeaf);
   for (const Draw& draw : scene.draws()) {
     if (!draw.seen) continue;
-    commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipelines_.at(constantsOf(draw)));
-    scene.record(commands, *layout.pipeline, frame_set, draw);
+    commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
+                          *pipelines_.at(GpuScene::shapeConstants(draw)));
+    scene.recordSeen(commands, *layout.pipeline, frame_set, draw);
   }
+  if (scene.forest() != nullptr) impostors.recordVelocity(commands, frame_set, *scene.forest());
   if (scene.terrain() != nullptr) grass.recordVelocity(commands, frame_set, *scene.terrain());
   commands.endRendering();
-  gpu::imageBarrier(commands, *ways_->image, color_aspect, gpu::Use::kColorAttachment,
+  gpu::imageBarrier(commands, *ways_->image, gpu::kColorAspect, gpu::Use::kColorAttachment,
                     gpu::Use::kTransferSource);
   commands.copyImageToBuffer(
       *ways_->image, vk::ImageLayout::eTransferSrcOptimal, *readback_->buffer,
-      vk::BufferImageCopy{.imageSubresource = {.aspectMask = color_aspect, .layerCount = 1},
+      vk::BufferImageCopy{.imageSubresource = {.aspectMask = gpu::kColorAspect, .layerCount = 1},
                           .imageExtent = {area.extent.width, area.extent.height, 1}});
   gpu::bufferBarrier(commands, *readback_->buffer, gpu::Use::kTransferTarget, gpu::Use::kHostRead);
 }

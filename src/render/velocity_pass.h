@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "render/frame_layout.h"
+#include "render/impostor_pass.h"
 #include "render/scene.h"
 
 namespace verdure {
@@ -18,7 +19,8 @@ class VelocityPass {
                int width, int height);
   /// Needs the motion of both frames, and frame.last_clip_from_world.
   void record(const vk::raii::CommandBuffer& commands, const FrameLayout& layout,
-              vk::DescriptorSet frame_set, const GpuScene& scene, const GrassPass& grass) const;
+              vk::DescriptorSet frame_set, const GpuScene& scene, const ImpostorPass& impostors,
+              const GrassPass& grass) const;
   /// Pixels, x right, y down; after the fence. Where nothing was drawn, the ground's plane and the
   /// sky, which stand still.
   std::vector<glm::vec2> read(const Camera& now, const Camera& last,

@@ -18,6 +18,7 @@ layout(set = 0, binding = 8, std430) buffer Seats { Seat seats[]; };
 layout(set = 0, binding = 9, std430) buffer Fars { uint fars[]; };    // places of impostors
 layout(set = 0, binding = 10, std430) buffer Slots { uint slots[]; };  // of each place: its motion
 layout(set = 0, binding = 11, std430) readonly buffer Horizon { float horizon[]; };
+layout(set = 0, binding = 12, std430) readonly buffer Tiles { float tiles[]; };  // depth_tiles.comp
 layout(push_constant, std430) uniform JobBlock {
   uint first_view;
   uint place_count;
@@ -35,9 +36,28 @@ struct Chosen {
   float share;         // of the first
 };
 
+/// By what has been drawn.
+bool isBehind(ForestView view, vec3 middle, float half_height, float half_width) {
+  DepthTiles at = depthTilesOf(view, middle, half_height, half_width);
+  uint width = depthTiles(view.width), first = 0u;
+  if (max(at.end_x - at.first_x, at.end_y - at.first_y) > 8u) {  // by blocks
+    first = width * depthTiles(view.height);
+    width /= 8u;
+    at.first_x /= 8u;
+    at.first_y /= 8u;
+    at.end_x = (at.end_x + 7u) / 8u;
+    at.end_y = (at.end_y + 7u) / 8u;
+  }
+  for (uint y = at.first_y; y < at.end_y; ++y)
+    for (uint x = at.first_x; x < at.end_x; ++x)
+      if (at.depth >= tiles[first + y * width + x]) return false;
+  return at.depth < 1.0;
+}
+
 bool seesCluster(ForestView view) {
   vec4 sphere = clusters[gl_WorkGroupID.x];
-  return seesSphere(view, sphere.xyz, sphere.w);
+  return seesSphere(view, sphere.xyz, sphere.w) &&
+         (view.hides == 0u || !isBehind(view, sphere.xyz, sphere.w, sphere.w));
 }
 
 /// By the ground.
@@ -60,6 +80,9 @@ Chosen chosenIn(ForestView view, uint index) {
   if (!seesSphere(view, middle, kind.sphere.w * place.scale)) return chosen;
   if (view.horizon != 0u && isHidden(middle - view.eye.xyz, kind.sphere.w * place.scale))
     return chosen;
+  if (view.hides != 0u &&
+      isBehind(view, middle, kind.half_height * place.scale, kind.half_width * place.scale))
+    return chosen;
   float size = 1.0 / place.scale;
   ForestLevel choice = forestLevel(kind.reach, kind.meshes, kind.has_impostor,
                                    distance(middle, view.eye.xyz) * size, view.eye.w * size);
@@ -67,6 +90,7 @@ Chosen chosenIn(ForestView view, uint index) {
     if (kind.moves != 0u && choice.level < kind.meshes) chosen.first = place.kind;
     return chosen;
   }
+  if (view.part != kForestAll && (view.part == kForestFront) != (choice.next < kind.meshes)) return chosen;
   bool gives_way = choice.next != choice.level;
   if (view.fades == 0u && gives_way && choice.share < 0.5) choice.level = choice.next;
   chosen.first = kind.first_class + choice.level;

@@ -17,6 +17,8 @@ layout(location = 4) flat out uvec3 out_views;
 layout(location = 5) flat out vec2 out_turn;  // cosine and sine of its angle
 layout(location = 6) flat out uvec2 out_seat;
 layout(location = 7) flat out float out_scale;
+layout(location = 8) out vec3 out_now;  // clip x, y, w; both of velocities alone
+layout(location = 9) out vec3 out_last;
 
 vec2 trunkNoise(MotionDrive drive, uvec2 phase, uint whole, float fraction) {
   uvec2 size = uvec2(drive.size & 0xffffu, drive.size >> 16);
@@ -29,12 +31,12 @@ vec2 trunkNoise(MotionDrive drive, uvec2 phase, uint whole, float fraction) {
 }
 
 /// As its trunk moves; what grows on it is too small to be seen moving.
-vec3 bentWithTrunk(ImpostorKind kind, ForestPlace place, vec3 p) {
+vec3 bentWithTrunk(ImpostorKind kind, ForestPlace place, MotionMoment moment, uint whole, vec3 p) {
   MotionBeam beam = beams[kind.beam];
   MotionDrive drive = drives[kind.beam];
-  vec3 toward = turnedBy(-place.angle, kind.moment.toward.xyz);
-  float speed = gustySpeed(kind.moment, vec3(place.x, place.y, place.z));
-  vec2 noise = trunkNoise(drive, motionPhase(place.phase), kind.whole, kind.moment.drift.w);
+  vec3 toward = turnedBy(-place.angle, moment.toward.xyz);
+  float speed = gustySpeed(moment, vec3(place.x, place.y, place.z));
+  vec2 noise = trunkNoise(drive, motionPhase(place.phase), whole, moment.drift.w);
   float along = clamp(dot(p - beam.root, beam.t) / beam.span, 0.0, 1.0);
   MovedVertex at = MovedVertex(p, vec3(0.0, 1.0, 0.0));
   return bentByBeam(beam, along, branchAmplitudes(beam, drive, toward, speed, noise), at).position;
@@ -56,7 +58,8 @@ void main() {
   float row = float(vertex / 6u + (is_upper ? 1u : 0u)) / float(kImpostorRows);
   vec3 local = kind.sphere.xyz +
                kind.sphere.w * ((is_right ? 1.0 : -1.0) * right + (2.0 * row - 1.0) * up);
-  vec3 bent = kind.moves != 0u ? bentWithTrunk(kind, place, local) : local;
+  bool moves = kind.moves != 0u;
+  vec3 bent = moves ? bentWithTrunk(kind, place, kind.moment, kind.whole, local) : local;
   vec3 base = vec3(place.x, place.y, place.z);
   out_position = base + place.scale * turnedBy(place.angle, bent);
   out_local = local;
@@ -84,4 +87,10 @@ void main() {
   } else {
     gl_Position = frame.clip_from_world * vec4(out_position, 1.0);
   }
+  if (job.velocity == 0u) return;
+  vec3 was = moves ? bentWithTrunk(kind, place, kind.last_moment, kind.last_whole, local) : local;
+  vec4 last = frame.last_clip_from_world *
+              vec4(base + place.scale * turnedBy(place.angle, was), 1.0);
+  out_now = gl_Position.xyw;
+  out_last = last.xyw;
 }

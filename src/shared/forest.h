@@ -17,6 +17,10 @@ const uint kForestNone = 0xffffffffu;
 /// In the fade of a drawn tree: what the finer level leaves, see keptSamples().
 const uint kForestRest = 128u;
 const uint kForestWhole = 127u;
+/// A tile of the farthest depths has so many pixels a side; 8 x 8 tiles are a block.
+const uint kDepthTile = 8u;
+/// Trees of a view: all, those that are meshes alone, those that are (or become) impostors.
+const uint kForestAll = 0u, kForestFront = 1u, kForestBehind = 2u;
 
 /// verdure::Placement, by its words.
 struct ForestPlace {
@@ -41,12 +45,17 @@ struct ForestKindData {
   uint beams;
   uint leaf_base;
   uint leaves;
+  float half_height;  ///< of an upright cylinder around the same middle that holds it, too
+  float half_width;
+  uint padding0;
+  uint padding1;
 };
-SHARED_SIZE(ForestKindData, 64);
+SHARED_SIZE(ForestKindData, 80);
 
 /// From where the forest is looked at.
 struct ForestView {
   vec4 planes[6];   ///< dot(xyz, p) + w is negative outside, m
+  mat4 clip;        ///< from the world; of the picture
   vec4 eye;         ///< of the picture, from which levels are chosen; w: most reach of meshes, m
   float farthest;   ///< from the eye, m
   uint fades;       ///< levels give way to each other step by step, not at once
@@ -56,8 +65,12 @@ struct ForestView {
   uint fars;
   uint motion;   ///< 1: all trees around that may be drawn as meshes, for their motion
   uint horizon;  ///< 1: what hills hide is left out
+  uint part;     ///< kForestAll, kForestFront or kForestBehind
+  uint hides;    ///< 1: what lies behind the farthest depths is left out
+  uint width;    ///< of the picture, pixels
+  uint height;
 };
-SHARED_SIZE(ForestView, 144);
+SHARED_SIZE(ForestView, 224);
 
 /// An impostor is a strip of so many quads, so that it can bend.
 const uint kImpostorRows = 4u;
@@ -75,12 +88,13 @@ struct ImpostorKind {
   uint moves;
   uint whole;  ///< seconds
   MotionMoment moment;
-  uint beam;  ///< its trunk
-  uint padding0;
+  MotionMoment last_moment;  ///< of the last frame, where velocities are asked for
+  uint beam;                 ///< its trunk
+  uint last_whole;
   uint padding1;
   uint padding2;
 };
-SHARED_SIZE(ImpostorKind, 208);
+SHARED_SIZE(ImpostorKind, 304);
 
 /// Push constants of its draws.
 struct ImpostorJob {
@@ -89,8 +103,9 @@ struct ImpostorJob {
   uint first_far;  ///< of the view's
   uint cascade;    ///< kForestNone: the picture
   float most;      ///< reach of meshes, m
+  uint velocity;   ///< 1: where its vertices were in the last frame is asked for
 };
-SHARED_SIZE(ImpostorJob, 20);
+SHARED_SIZE(ImpostorJob, 24);
 
 /// The level at which a tree is drawn, and the one that it gives way to.
 struct ForestLevel {
@@ -130,6 +145,60 @@ SHARED_FUNCTION bool seesSphere(ForestView view, vec3 middle, float radius) {
   for (int i = 0; i < 6; ++i)
     if (dot(vec3(view.planes[i]), middle) + view.planes[i].w < -radius) return false;
   return length(middle - vec3(view.eye)) - radius < view.farthest;
+}
+
+/// Where something is in the picture, all of it: a rectangle of tiles, and its nearest depth.
+struct DepthTiles {
+  uint first_x;
+  uint first_y;
+  uint end_x;  ///< behind the last
+  uint end_y;
+  float depth;  ///< 2 where it reaches behind the eye: nothing hides it
+};
+
+/// Half of an upright cylinder's extent along a direction of any length, times that.
+SHARED_FUNCTION float cylinderExtent(vec3 along, float half_height, float half_width) {
+  return half_height * abs(along.y) + half_width * sqrt(along.x * along.x + along.z * along.z);
+}
+
+/// Of the box along the camera's axes that holds an upright cylinder, and a pixel around.
+SHARED_FUNCTION DepthTiles depthTilesOf(ForestView view, vec3 middle, float half_height,
+                                        float half_width) {
+  vec4 clip = view.clip * vec4(middle, 1.0f);
+  vec3 x_row = vec3(view.clip[0][0], view.clip[1][0], view.clip[2][0]);
+  vec3 y_row = vec3(view.clip[0][1], view.clip[1][1], view.clip[2][1]);
+  vec3 z_row = vec3(view.clip[0][2], view.clip[1][2], view.clip[2][2]);
+  vec3 w_row = vec3(view.clip[0][3], view.clip[1][3], view.clip[2][3]);
+  float half_w = cylinderExtent(w_row, half_height, half_width);
+  float near = clip.w - half_w, far = clip.w + half_w;
+  DepthTiles tiles;
+  tiles.first_x = 0u;
+  tiles.first_y = 0u;
+  tiles.end_x = 0u;
+  tiles.end_y = 0u;
+  tiles.depth = 2.0f;
+  if (near <= 1e-3f * half_w) return tiles;
+  // Depths fall along the axis of the eye.
+  tiles.depth = (clip.z - dot(z_row, w_row) / dot(w_row, w_row) * half_w) / near;
+  float half_x = cylinderExtent(x_row, half_height, half_width);
+  float half_y = cylinderExtent(y_row, half_height, half_width);
+  vec2 low = vec2(min((clip.x - half_x) / near, (clip.x - half_x) / far),
+                  min((clip.y - half_y) / near, (clip.y - half_y) / far));
+  vec2 high = vec2(max((clip.x + half_x) / near, (clip.x + half_x) / far),
+                   max((clip.y + half_y) / near, (clip.y + half_y) / far));
+  vec2 size = vec2(float(view.width), float(view.height));
+  low = clamp((low * 0.5f + 0.5f) * size - 1.0f, vec2(0.0f), size);
+  high = clamp((high * 0.5f + 0.5f) * size + 1.0f, vec2(0.0f), size);
+  tiles.first_x = uint(low.x) / kDepthTile;
+  tiles.first_y = uint(low.y) / kDepthTile;
+  tiles.end_x = (uint(high.x) + kDepthTile) / kDepthTile;
+  tiles.end_y = (uint(high.y) + kDepthTile) / kDepthTile;
+  return tiles;
+}
+
+/// Tiles along a side of so many pixels: whole blocks.
+SHARED_FUNCTION uint depthTiles(uint pixels) {
+  return (pixels + 63u) / 64u * 8u;
 }
 
 /// A direction from the plant's coordinates to the world's, by its turn about +Y.

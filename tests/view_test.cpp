@@ -10,6 +10,7 @@
 #include "app/view/background_job.h"
 #include "app/view/fly_camera.h"
 #include "app/view/orbit_camera.h"
+#include "app/view/settings_history.h"
 #include "app/view/surface_overlay.h"
 #include "scene/camera.h"
 #include "verdure/grow.h"
@@ -290,6 +291,123 @@ TEST(MotionSettings, LevelsAndBranchesBendByTheirFactors) {
   }
   // What is left alone stays, to the bit.
   EXPECT_EQ(branchAmplitudes(usual, wind, 1.5), branchAmplitudes(plantMotion(plant), wind, 1.5));
+}
+
+/// A value that tests tell from others.
+SceneSettings hazy(double turbidity) {
+  SceneSettings settings;
+  settings.daylight.turbidity = turbidity;
+  return settings;
+}
+
+double turbidityOf(const SettingsHistory::Step& step) {
+  return step.settings->daylight.turbidity;
+}
+
+TEST(SettingsHistory, GoesBackAndForthAlongWhatSettled) {
+  SettingsHistory history;
+  history.start(hazy(2.0), true);
+  EXPECT_FALSE(history.canUndo());
+  EXPECT_FALSE(history.canRedo());
+  for (const double turbidity : {3.0, 4.0, 5.0}) {
+    history.note({Change::kPicture});
+    history.settle(hazy(turbidity));
+  }
+  EXPECT_EQ(turbidityOf(history.undo()), 4.0);
+  EXPECT_EQ(turbidityOf(history.undo()), 3.0);
+  EXPECT_EQ(turbidityOf(history.redo()), 4.0);
+  EXPECT_EQ(turbidityOf(history.undo()), 3.0);
+  EXPECT_EQ(turbidityOf(history.undo()), 2.0);
+  EXPECT_FALSE(history.canUndo());
+  // Another change forgets what was taken back.
+  history.note({Change::kPicture});
+  history.settle(hazy(9.0));
+  EXPECT_FALSE(history.canRedo());
+  EXPECT_EQ(turbidityOf(history.undo()), 2.0);
+}
+
+TEST(SettingsHistory, ADragIsOneStepAndBackAgainIsNone) {
+  SettingsHistory history;
+  history.start(hazy(2.0), true);
+  for (int i = 0; i < 10; ++i) history.note({Change::kPicture});
+  EXPECT_TRUE(history.modified());
+  history.settle(hazy(2.0));
+  EXPECT_FALSE(history.canUndo());
+  EXPECT_FALSE(history.modified());
+  for (int i = 0; i < 10; ++i) history.note({Change::kPicture});
+  history.settle(hazy(5.0));
+  history.settle(hazy(5.0));
+  EXPECT_EQ(turbidityOf(history.undo()), 2.0);
+  EXPECT_FALSE(history.canUndo());
+}
+
+TEST(SettingsHistory, SaysWhatAStepAsksForInBothDirections) {
+  SettingsHistory history;
+  history.start(hazy(2.0), true);
+  history.note({Change::kScene});
+  history.note({Change::kBake, 3});
+  history.note({Change::kBake, 3});
+  history.note({Change::kPicture});
+  history.settle(hazy(5.0));
+  history.note({Change::kMotion, 1});
+  history.settle(hazy(6.0));
+  using Edit = SettingsHistory::Edit;
+  const std::set<Edit> last{{Change::kMotion, 1}};
+  const std::set<Edit> first{{Change::kPicture, 0}, {Change::kBake, 3}, {Change::kScene, 0}};
+  EXPECT_EQ(history.undo().edits, last);
+  EXPECT_EQ(history.undo().edits, first);
+  EXPECT_EQ(history.redo().edits, first);
+  EXPECT_EQ(history.redo().edits, last);
+  EXPECT_EQ(first.rbegin()->change, Change::kScene);  // which makes the others needless
+}
+
+TEST(SettingsHistory, KnowsWhichValueIsInAFile) {
+  SettingsHistory history;
+  EXPECT_FALSE(history.modified());
+  const auto change = [&history](double turbidity) {
+    history.note({Change::kPicture});
+    history.settle(hazy(turbidity));
+  };
+  history.start(hazy(2.0), false);  // grown
+  EXPECT_TRUE(history.modified());
+  change(3.0);
+  history.markSaved();
+  EXPECT_FALSE(history.modified());
+  change(4.0);
+  EXPECT_TRUE(history.modified());
+  history.undo();
+  EXPECT_FALSE(history.modified());
+  history.undo();
+  EXPECT_TRUE(history.modified());
+  // The saved one is forgotten; one in its place is not it.
+  change(5.0);
+  EXPECT_TRUE(history.modified());
+}
+
+TEST(SettingsHistory, ForgetsTheOldest) {
+  SettingsHistory history;
+  history.start(hazy(0.0), true);
+  const int more = static_cast<int>(SettingsHistory::kMostSteps) + 20;
+  for (int i = 1; i <= more; ++i) {
+    history.note({Change::kPicture});
+    history.settle(hazy(i));
+  }
+  std::size_t steps = 0;
+  for (double expected = more - 1; history.canUndo(); --expected, ++steps)
+    EXPECT_EQ(turbidityOf(history.undo()), expected);
+  EXPECT_EQ(steps, SettingsHistory::kMostSteps);
+  EXPECT_TRUE(history.modified());  // the value in the file is no longer known
+}
+
+TEST(SettingsHistory, OpeningBeginsAnew) {
+  SettingsHistory history;
+  history.note({Change::kPicture});
+  history.settle(hazy(5.0));
+  history.note({Change::kPicture});
+  history.start(hazy(7.0), true);
+  history.settle(hazy(8.0));  // nothing was noted since
+  EXPECT_FALSE(history.canUndo());
+  EXPECT_FALSE(history.modified());
 }
 
 }  // namespace

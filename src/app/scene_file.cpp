@@ -358,7 +358,7 @@ SceneSettings readScene(const fs::path& path) {
   return settings;
 }
 
-void writeScene(const SceneSettings& settings, const fs::path& path) {
+std::string sceneText(const SceneSettings& settings, const fs::path& path) {
   SceneSettings named = settings;
   nameAll(named.plants);
   for (PlantSettings& plant : named.plants)
@@ -366,7 +366,11 @@ void writeScene(const SceneSettings& settings, const fs::path& path) {
       plant.bake->field = "metaball";
   SceneWriter writer(path, kVersion);
   fieldsOf(writer, named);
-  writeFile(path, writer.text());
+  return writer.text();
+}
+
+void writeScene(const SceneSettings& settings, const fs::path& path) {
+  writeFile(path, sceneText(settings, path));
 }
 
 }  // namespace verdure::app

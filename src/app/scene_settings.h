@@ -169,6 +169,10 @@ SceneSettings readScene(const std::filesystem::path& path);
 /// Atomic. What was written is read again as it was, to the bit.
 void writeScene(const SceneSettings& settings, const std::filesystem::path& path);
 
+/// What writeScene() writes there: the same text for the same settings. Throws Error for names that
+/// are no UTF-8.
+std::string sceneText(const SceneSettings& settings, const std::filesystem::path& path);
+
 /// Whether a path ends as scene files do: .json.
 bool isSceneFile(const std::filesystem::path& path);
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <system_error>
 
+#include "app/view/widgets.h"
+
 namespace verdure::app {
 
 std::vector<std::pair<std::string, bool>> folderEntries(
@@ -77,9 +79,9 @@ void FileDialog::draw() {
     ImGui::TextColored({1.0f, 0.5f, 0.4f, 1.0f}, "%s", problem_.c_str());
   else
     ImGui::TextDisabled("%s", save_ ? "A file in the place is replaced." : " ");
-  done = ImGui::Button(save_ ? "Save" : "Open", {90.0f, 0.0f}) || done;
+  done = dialogButton(save_ ? "Save" : "Open") || done;
   ImGui::SameLine();
-  if (ImGui::Button("Cancel", {90.0f, 0.0f})) ImGui::CloseCurrentPopup();
+  if (cancelButton()) ImGui::CloseCurrentPopup();
   if (done) {
     const std::filesystem::path wanted(path_);
     if (std::filesystem::is_directory(wanted, unknown)) {

@@ -67,29 +67,55 @@ GuiContext::~GuiContext() {
 Gui::Gui(Window& window, Screen& screen, ViewSession& session)
     : window_(&window), screen_(&screen), session_(&session) {}
 
+void Gui::leaveScene(std::function<void()> then) {
+  asks_to_close_ = false;
+  leave_ = nullptr;
+  if (session_->modified())
+    leave_ = std::move(then);
+  else
+    then();
+}
+
 void Gui::askToClose() {
-  // Asked twice is answered.
-  if (!session_->modified() || asks_to_close_) closes_ = true;
-  asks_to_close_ = true;
+  if (asks_to_close_) {  // asked twice is answered
+    closes_ = true;
+    return;
+  }
+  leaveScene([this] { closes_ = true; });
+  asks_to_close_ = leave_ != nullptr;
+}
+
+void Gui::openFile(const std::filesystem::path& path) {
+  if (isPanorama(path)) {
+    session_->settings.daylight.sky = path.string();
+    session_->changed(Change::kPicture);
+  } else {
+    leaveScene([this, path] { session_->open(path); });
+  }
 }
 
 void Gui::openDialog() {
   files_.open("Open a plant, a scene or a panorama", std::filesystem::current_path(), kOpened,
-              false, [this](const std::filesystem::path& path) {
-                if (isPanorama(path)) {
-                  session_->settings.daylight.sky = path.string();
-                  session_->changed(Change::kPicture);
-                } else {
-                  session_->open(path);
-                }
-              });
+              false, [this](const std::filesystem::path& path) { openFile(path); });
 }
 
-void Gui::saveDialog() {
+void Gui::saveThen(const std::filesystem::path& path, const std::function<void()>& then) {
+  session_->saveScene(path);
+  if (then && !session_->modified()) then();
+}
+
+void Gui::save(const std::function<void()>& then) {
+  if (session_->scenePath().empty())
+    saveDialog(then);
+  else
+    saveThen(session_->scenePath(), then);
+}
+
+void Gui::saveDialog(const std::function<void()>& then) {
   const std::filesystem::path known = session_->scenePath();
   files_.open("Save the scene", known.empty() ? std::filesystem::path("scene.json") : known,
               {".json"}, true,
-              [this](const std::filesystem::path& path) { session_->saveScene(path); });
+              [this, then](const std::filesystem::path& path) { saveThen(path, then); });
 }
 
 void Gui::menu() {
@@ -98,12 +124,7 @@ void Gui::menu() {
   if (ImGui::BeginMenu("File")) {
     if (ImGui::MenuItem("Open...", "Ctrl+O")) openDialog();
     if (ImGui::MenuItem("Grow...", "Ctrl+G")) asks_to_grow_ = true;
-    if (ImGui::MenuItem("Save the scene", "Ctrl+S")) {
-      if (session_->scenePath().empty())
-        saveDialog();
-      else
-        session_->saveScene(session_->scenePath());
-    }
+    if (ImGui::MenuItem("Save the scene", "Ctrl+S")) save();
     if (ImGui::MenuItem("Save the scene as...")) saveDialog();
     if (ImGui::MenuItem("Save the plant with its light...", nullptr, false, has_plant)) {
       const std::size_t plant = panel_state_.plant;
@@ -120,6 +141,11 @@ void Gui::menu() {
     if (ImGui::MenuItem("Close", "Ctrl+Q")) askToClose();
     ImGui::EndMenu();
   }
+  if (ImGui::BeginMenu("Edit")) {
+    if (ImGui::MenuItem("Undo", "Ctrl+Z", false, session_->canUndo())) session_->undo();
+    if (ImGui::MenuItem("Redo", "Ctrl+Shift+Z", false, session_->canRedo())) session_->redo();
+    ImGui::EndMenu();
+  }
   if (ImGui::BeginMenu("Bake")) {
     if (ImGui::MenuItem("Bake the light", "B", false, has_plant))
       session_->changed(Change::kBake, panel_state_.plant);
@@ -129,12 +155,8 @@ void Gui::menu() {
   if (ImGui::BeginMenu("View")) {
     ImGui::MenuItem("Panels", "Tab", &panels_);
     if (ImGui::MenuItem("Show all", "Home")) session_->showAll();
-    if (ImGui::MenuItem(session_->playing ? "Pause the wind" : "Let the wind blow", "Space")) {
-      session_->playing = !session_->playing;
-      if (session_->playing && !(session_->view().wind.speed > 0.0f))
-        session_->settings.wind.speed = 5.0f;
-      session_->changed(Change::kPicture);
-    }
+    if (ImGui::MenuItem(session_->playing ? "Pause the wind" : "Let the wind blow", "Space"))
+      session_->togglePlay();
     ImGui::EndMenu();
   }
   ImGui::TextDisabled("   %s", screen_->deviceName().c_str());
@@ -155,35 +177,36 @@ void Gui::keys(const WindowInput& input) {
       askToClose();
     else if (ImGui::GetIO().WantTextInput || dialog)
       continue;
+    else if (control && key == GLFW_KEY_Z && ImGui::IsAnyItemActive())
+      continue;  // a value is being dragged
+    else if (control && key == GLFW_KEY_Z)
+      shift ? session_->redo() : session_->undo();
     else if (control && key == GLFW_KEY_O)
       openDialog();
     else if (control && key == GLFW_KEY_G)
       asks_to_grow_ = true;
-    else if (control && key == GLFW_KEY_S && session_->scenePath().empty())
-      saveDialog();
     else if (control && key == GLFW_KEY_S)
-      session_->saveScene(session_->scenePath());
+      save();
     else if (key == GLFW_KEY_TAB)
       panels_ = !panels_;
     else if (key == GLFW_KEY_HOME)
       session_->showAll();
     else if (key == GLFW_KEY_B && session_->shown() != nullptr)
       session_->changed(Change::kBake, panel_state_.plant);
-    else if (key == GLFW_KEY_SPACE) {
-      session_->playing = !session_->playing;
-      if (session_->playing && !(session_->view().wind.speed > 0.0f)) {
-        session_->settings.wind.speed = 5.0f;
-        session_->changed(Change::kPicture);
-      }
-    }
+    else if (key == GLFW_KEY_SPACE)
+      session_->togglePlay();
   }
-  for (const std::filesystem::path& path : input.dropped)
-    if (isPanorama(path)) {
-      session_->settings.daylight.sky = path.string();
-      session_->changed(Change::kPicture);
-    } else {
-      session_->open(path);
-    }
+}
+
+void Gui::feedKeys(const WindowInput& input) {
+  bool* const down = ImGui::GetIO().KeysDown;
+  for (const int key : brief_keys_) down[key] = held(*window_, key);
+  brief_keys_.clear();
+  for (const auto& [key, modifiers] : input.keys) {
+    if (key < 0 || down[key]) continue;
+    down[key] = true;
+    brief_keys_.push_back(key);
+  }
 }
 
 void Gui::moveCamera(double seconds) {
@@ -326,12 +349,12 @@ void Gui::growDialog() {
   constexpr std::array kForms{"folded blades", "one quad a leaf"};
   if (choice("leaves", form, kForms))
     grow_.leaf_form = form == 0 ? LeafForm::kMesh : LeafForm::kCard;
-  if (ImGui::Button("Grow", {90.0f, 0.0f})) {
-    session_->grow(grow_);
+  if (acceptButton("Grow")) {
+    leaveScene([this, options = grow_] { session_->grow(options); });
     ImGui::CloseCurrentPopup();
   }
   ImGui::SameLine();
-  if (ImGui::Button("Cancel", {90.0f, 0.0f})) ImGui::CloseCurrentPopup();
+  if (cancelButton()) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
 }
 
@@ -344,25 +367,36 @@ void Gui::clipDialog() {
   clip_frames_ = std::clamp(clip_frames_, 1, 100000);
   clip_fps_ = std::clamp(clip_fps_, 1, 240);
   ImGui::TextDisabled(".mp4, .webm or .gif by ffmpeg; .png: numbered pictures");
-  if (ImGui::Button("Save", {90.0f, 0.0f})) {
+  if (acceptButton("Save")) {
     session_->startClip(clip_path_, clip_frames_, clip_fps_);
     ImGui::CloseCurrentPopup();
   }
   ImGui::SameLine();
-  if (ImGui::Button("Cancel", {90.0f, 0.0f})) ImGui::CloseCurrentPopup();
+  if (cancelButton()) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
 }
 
-void Gui::closeDialog() {
-  if (asks_to_close_ && !closes_) ImGui::OpenPopup("Close without saving?");
-  if (!ImGui::BeginPopupModal("Close without saving?", nullptr, ImGuiWindowFlags_AlwaysAutoResize))
-    return;
+void Gui::saveQuestion() {
+  constexpr const char* kTitle = "Save the changes?";
+  if (leave_) ImGui::OpenPopup(kTitle);
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({0.5f * size.x, 0.5f * size.y}, ImGuiCond_Appearing, {0.5f, 0.5f});
+  if (!ImGui::BeginPopupModal(kTitle, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
   ImGui::TextUnformatted("The scene has changes that are in no file.");
-  if (ImGui::Button("Close", {90.0f, 0.0f})) closes_ = true;
+  ImGui::Spacing();
+  const bool saves = acceptButton("Save");
   ImGui::SameLine();
-  if (ImGui::Button("Cancel", {90.0f, 0.0f})) {
-    asks_to_close_ = false;
+  const bool discards = dialogButton("Discard");
+  ImGui::SameLine();
+  const bool cancels = cancelButton();
+  if (saves || discards || cancels) {
     ImGui::CloseCurrentPopup();
+    asks_to_close_ = false;
+    const std::function<void()> then = std::exchange(leave_, nullptr);
+    if (saves)
+      save(then);
+    else if (discards)
+      then();
   }
   ImGui::EndPopup();
 }
@@ -382,9 +416,11 @@ void Gui::frame(const WindowInput& input, double seconds) {
   session_->advance(seconds);
   updateTitle();
   const glm::ivec2 pixels = window_->size();
+  feedKeys(input);
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
   keys(input);
+  for (const std::filesystem::path& path : input.dropped) openFile(path);
   menu();
   const ImVec2 display = ImGui::GetIO().DisplaySize;
   const float top = ImGui::GetFrameHeight();
@@ -403,7 +439,8 @@ void Gui::frame(const WindowInput& input, double seconds) {
   files_.draw();
   growDialog();
   clipDialog();
-  closeDialog();
+  saveQuestion();
+  if (!ImGui::IsAnyItemActive()) session_->settle();
   moveCamera(seconds);
   const glm::vec2 at(left, top), size(display.x - left, display.y - top - bottom);
   if (pixels.x > 0 && pixels.y > 0 && size.x >= 1.0f && size.y >= 1.0f) {

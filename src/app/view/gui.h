@@ -2,8 +2,10 @@
 #define VERDURE_APP_VIEW_GUI_H_
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/view/file_dialog.h"
 #include "app/view/panels.h"
@@ -45,15 +47,26 @@ class Gui {
  private:
   void menu();
   void keys(const WindowInput& input);
+  /// Panels see a key at the start of a frame only; a slow one would miss those that were pressed
+  /// and let go since the last.
+  void feedKeys(const WindowInput& input);
   void moveCamera(double seconds);
   void drawPictures(const glm::vec2& at, const glm::vec2& size);
   void drawSurface(const glm::vec2& at, const glm::vec2& size);
   void statusBar(float height);
   void growDialog();
   void clipDialog();
-  void closeDialog();
   void openDialog();
-  void saveDialog();
+  void saveQuestion();
+  /// Does what the scene does not survive: at once if all of it is in a file, else when the user
+  /// has answered whether it is to be saved. Of several the newest.
+  void leaveScene(std::function<void()> then);
+  /// A plant, a scene, or a panorama as the sky.
+  void openFile(const std::filesystem::path& path);
+  // `then`: once it is saved; may be empty.
+  void save(const std::function<void()>& then = {});
+  void saveDialog(const std::function<void()>& then = {});
+  void saveThen(const std::filesystem::path& path, const std::function<void()>& then);
   void updateTitle();
 
   Window* window_;
@@ -63,12 +76,15 @@ class Gui {
   FileDialog files_;
   bool panels_ = true;
   bool moves_ = false;
-  bool closes_ = false, asks_to_close_ = false;
+  bool closes_ = false;
+  std::function<void()> leave_;  ///< what waits for the answer
+  bool asks_to_close_ = false;   ///< it is to close
   bool asks_to_grow_ = false, asks_for_clip_ = false;
   GrowOptions grow_;
   std::string clip_path_ = "clip.mp4";
   int clip_frames_ = 48, clip_fps_ = 24;
-  bool drags_ = false;  ///< a mouse button went down over the picture
+  std::vector<int> brief_keys_;  ///< let go already when they were fed
+  bool drags_ = false;           ///< a mouse button went down over the picture
   std::filesystem::path capture_;
   std::string title_;
 };

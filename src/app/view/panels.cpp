@@ -321,11 +321,7 @@ Change windPanel(ViewSession& session) {
     wind.seconds = seconds;
     changed = true;
   }
-  if (ImGui::Button(session.playing ? "Pause" : "Play")) {
-    session.playing = !session.playing;
-    if (session.playing && !(speed > 0.0f)) wind.speed = 5.0f;
-    changed = true;
-  }
+  if (ImGui::Button(session.playing ? "Pause" : "Play")) session.togglePlay();
   return picture(changed);
 }
 
@@ -384,9 +380,11 @@ void cameraPanel(ViewSession& session) {
   explain(
       "Left: orbit. Middle, or Shift and left: move. Wheel: nearer. Right: look around; with W A S "
       "D Q E: fly.");
-  ImGui::InputInt2("picture size", &session.settings.width);
-  session.settings.width = std::clamp(session.settings.width, 16, 16384);
-  session.settings.height = std::clamp(session.settings.height, 16, 16384);
+  if (ImGui::InputInt2("picture size", &session.settings.width)) {
+    session.settings.width = std::clamp(session.settings.width, 16, 16384);
+    session.settings.height = std::clamp(session.settings.height, 16, 16384);
+    session.changed(Change::kPicture);
+  }
 }
 
 void timesPanel(const ViewSession& session) {

@@ -63,13 +63,43 @@ void ViewSession::fail(const std::exception& problem) {
 
 void ViewSession::changed(Change change, std::size_t plant) {
   if (change == Change::kNothing) return;
-  modified_ = true;
+  history_.note({change, plant});
+  apply({change, plant});
+}
+
+void ViewSession::apply(const SettingsHistory::Edit& edit) {
+  const auto& [change, plant] = edit;
   if (change == Change::kScene) return load(false);
   if (change < Change::kMotion) return rebuildView();
   // Until the result is there the picture stays as it is, and the processor is the job's.
   (change == Change::kBake ? stale_bakes_ : stale_motions_).insert(plant);
   if (change == Change::kBake && !bake_asked_) bake_asked_.emplace();
   renew();
+}
+
+void ViewSession::restore(const SettingsHistory::Step& step) {
+  const LookSettings before = settings.look;
+  settings = *step.settings;
+  playing = false;
+  lightChanged(before);
+  for (const SettingsHistory::Edit& edit : step.edits) apply(edit);
+}
+
+void ViewSession::undo() {
+  settle();
+  if (canUndo()) restore(history_.undo());
+}
+
+void ViewSession::redo() {
+  settle();
+  if (canRedo()) restore(history_.redo());
+}
+
+void ViewSession::togglePlay() {
+  playing = !playing;
+  if (!playing || view_.wind.speed > 0.0f) return;
+  settings.wind.speed = 5.0f;
+  changed(Change::kPicture);
 }
 
 View ViewSession::viewWith(const LookSettings& look) const {
@@ -82,7 +112,7 @@ View ViewSession::viewWith(const LookSettings& look) const {
   wanted.camera.target = view_.camera.target;
   View view = shown_ ? shown_->loaded().view(wanted) : viewOf(wanted);
   view.camera = view_.camera;
-  view.camera.vertical_fov = static_cast<float>(settings.camera.fov_deg * M_PI / 180.0);
+  view.camera.vertical_fov = glm::radians(static_cast<float>(settings.camera.fov_deg));
   if (same_sky) view.daylight = view_.daylight;
   return view;
 }
@@ -125,7 +155,7 @@ void ViewSession::open(const std::filesystem::path& path) {
     return fail(e);
   }
   name_ = fileName(path);
-  modified_ = false;
+  history_.start(settings, true);
   load(true);
 }
 
@@ -138,14 +168,17 @@ void ViewSession::grow(const GrowOptions& options) {
   settings = std::move(scene);
   scene_path_.clear();
   name_ = options.species;
-  modified_ = true;
+  history_.start(settings, false);
   load(true);
 }
 
 void ViewSession::load(bool new_scene) {
   message.clear();
   job_.cancel();
-  job_.start("loading", [this, new_scene, wanted = settings](BackgroundJob::Control& control) {
+  loading_new_ = new_scene || (loading_ && loading_new_);
+  loading_ = true;
+  job_.start("loading", [this, another = loading_new_,
+                         wanted = settings](BackgroundJob::Control& control) {
     LoadSceneOptions options;
     options.any_look = true;
     options.progress = [&control](const std::string& step, double share) {
@@ -158,7 +191,8 @@ void ViewSession::load(bool new_scene) {
     SceneSettings all = wanted;
     all.camera.eye.reset();
     const Camera home = cameraOf(all, shown->scene());
-    control.handOver([this, new_scene, wanted, shown, packed, home] {
+    control.handOver([this, another, wanted, shown, packed, home] {
+      loading_ = false;
       try {
         screen_->setScene(packed);
       } catch (const std::exception& e) {
@@ -169,7 +203,7 @@ void ViewSession::load(bool new_scene) {
       ++scene_number_;
       stale_bakes_.clear();
       stale_motions_.clear();
-      if (new_scene) {
+      if (another) {
         view_.camera = home;
         if (wanted.camera.eye)
           view_.camera = {*wanted.camera.eye, wanted.camera.target, home.vertical_fov};
@@ -190,6 +224,7 @@ void ViewSession::lightChanged(const LookSettings& before) {
 }
 
 void ViewSession::renew() {
+  if (loading_) return load(false);  // a load that has begun knows older settings
   if (!shown_) return;
   const std::size_t count = std::min(shown_->loaded().plants().size(), settings.plants.size());
   for (std::set<std::size_t>* stale : {&stale_bakes_, &stale_motions_})
@@ -266,6 +301,7 @@ std::shared_ptr<const ShownScene> ViewSession::renewMotion(
 }
 
 void ViewSession::saveScene(const std::filesystem::path& path) {
+  settle();
   try {
     SceneSettings saved = settings;
     saved.camera.eye = view_.camera.eye;
@@ -273,7 +309,7 @@ void ViewSession::saveScene(const std::filesystem::path& path) {
     writeScene(saved, path);
     scene_path_ = path;
     name_ = fileName(path);
-    modified_ = false;
+    history_.markSaved();
     message.clear();
   } catch (const std::exception& e) {
     fail(e);

@@ -11,6 +11,7 @@
 #include "app/view/background_job.h"
 #include "app/view/changes.h"
 #include "app/view/screen.h"
+#include "app/view/settings_history.h"
 #include "app/view/shown_scene.h"
 #include "app/view/trace_view.h"
 #include "base/progress.h"
@@ -37,6 +38,17 @@ class ViewSession {
 
   /// A setting is another. `plant`: whose bake or motion.
   void changed(Change change, std::size_t plant = 0);
+
+  /// Nothing is held any more: what changed since the last call is one step of undo().
+  void settle() { history_.settle(settings); }
+  bool canUndo() const { return history_.canUndo(); }
+  bool canRedo() const { return history_.canRedo(); }
+  /// All settings as they were before the last step, or after the next one; the wind pauses, since
+  /// its time is one of them. Opening and growing begin anew.
+  void undo();
+  void redo();
+  /// Lets the wind blow, or pauses it.
+  void togglePlay();
 
   /// The preset is another than that of `before`: plants that are baked as it has it are baked
   /// anew.
@@ -87,7 +99,7 @@ class ViewSession {
   int tracedSamples() const { return tracer_.samples(); }
   const std::string& name() const { return name_; }
   const std::filesystem::path& scenePath() const { return scene_path_; }
-  bool modified() const { return modified_; }
+  bool modified() const { return history_.modified(); }
 
  private:
   struct Clip {
@@ -98,6 +110,8 @@ class ViewSession {
     View view;
   };
 
+  void apply(const SettingsHistory::Edit& edit);
+  void restore(const SettingsHistory::Step& step);
   void load(bool new_scene);
   void renew();  ///< bakes and motions that are stale
   // Of renew(), on its thread: hand over what they make, and return it.
@@ -118,10 +132,12 @@ class ViewSession {
   Screen* screen_;
   std::string name_ = "nothing";
   std::filesystem::path scene_path_;
-  bool modified_ = false;
+  SettingsHistory history_;
 
   std::shared_ptr<const ShownScene> shown_;
   int scene_number_ = 0;             ///< of what was loaded
+  bool loading_ = false;             ///< what is shown is not what the settings name
+  bool loading_new_ = false;         ///< ... and is another scene
   Camera home_;                      ///< sees all of it
   std::optional<Timer> bake_asked_;  ///< since a parameter changed, until a bake of it is shown
   double bake_latency_ = 0.0;

@@ -10,6 +10,11 @@ ImGuiSliderFlags flagsOf(bool logarithmic) {
          (logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None);
 }
 
+/// In this dialog: a key that opens it is no answer.
+bool pressedNow(ImGuiKey key) {
+  return !ImGui::IsWindowAppearing() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(key), false);
+}
+
 }  // namespace
 
 bool slider(const char* label, float& value, float least, float most, const char* format,
@@ -66,6 +71,18 @@ bool choice(const char* label, std::string& value, const std::vector<std::string
     }
   ImGui::EndCombo();
   return changed;
+}
+
+bool dialogButton(const char* label) {
+  return ImGui::Button(label, {90.0f, 0.0f});
+}
+
+bool acceptButton(const char* label) {
+  return dialogButton(label) || pressedNow(ImGuiKey_Enter) || pressedNow(ImGuiKey_KeyPadEnter);
+}
+
+bool cancelButton() {
+  return dialogButton("Cancel") || pressedNow(ImGuiKey_Escape);
 }
 
 void explain(const char* text) {

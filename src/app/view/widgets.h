@@ -10,7 +10,7 @@
 
 #include "app/view/changes.h"
 
-/// Small helpers over Dear ImGui for the panels; all return whether the value is another.
+/// Small helpers over Dear ImGui for the panels; those of a value return whether it is another.
 namespace verdure::app {
 
 inline Change picture(bool changed) {
@@ -36,6 +36,13 @@ bool optionalSlider(const char* label, std::optional<float>& value, float automa
 /// One of some names.
 bool choice(const char* label, int& index, std::span<const char* const> names);
 bool choice(const char* label, std::string& value, const std::vector<std::string>& values);
+
+/// At the foot of a dialog.
+bool dialogButton(const char* label);
+/// The one that Enter presses, too.
+bool acceptButton(const char* label);
+/// The one that Escape presses, too.
+bool cancelButton();
 
 /// A small "(?)" that explains.
 void explain(const char* text);

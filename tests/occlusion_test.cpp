@@ -343,7 +343,7 @@ TEST(Ambient, ForeignPlants) {
     SCOPED_TRACE(entry.path());
     const Plant plant = loadPlant(entry.path());
     std::vector<VertexId> some, all = allVertices(plant);
-    for (std::size_t i = 0; i < all.size(); i += 1 + all.size() / 500) some.push_back(all[i]);
+    for (std::size_t i = 0; i < all.size(); i += 1 + all.size() / 200) some.push_back(all[i]);
     double mean = 0.0;
     for (const Openness& seen : traceOpenness(plant, some, manyRays(64))) {
       ASSERT_GE(seen.share, 0.0f);

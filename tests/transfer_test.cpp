@@ -281,7 +281,7 @@ TEST(Transfer, ForeignPlants) {
     if (extension != ".glb" && extension != ".gltf") continue;
     SCOPED_TRACE(entry.path());
     const Plant plant = loadPlant(entry.path());
-    if (vertexCount(plant) > 60000) continue;
+    if (vertexCount(plant) > 30000) continue;
     TransferOptions o = options(16, 2, 2);
     o.rays.ground_height = bounds(plant).min.y;
     const PlantTransfer t = bakeTransfer(plant, o);

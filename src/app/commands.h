@@ -176,17 +176,6 @@ struct SkyCommand {
 };
 void runSky(const SkyCommand& command);
 
-/// Figures 5.3 to 5.7 of Habel 2009, with a page that shows them and the errors as JSON; the sun
-/// and the turbidity are those of Figure 5.5.
-struct SkyReport {
-  std::string folder = "figures";
-  int bands = 7;
-  glm::vec3 to_sun{0.0f, 0.70710678f, 0.70710678f};
-  float turbidity = 3.0f;
-  std::optional<DeviceOptions> scenes = {};  ///< draws Figures 5.6 and 5.7; else they are left out
-};
-void writeSkyReport(const SkyReport& report);
-
 struct FiguresCommand {
   std::string output = "figures";
   std::string species = "black-oak";
@@ -198,6 +187,18 @@ void runLuftFigures(const FiguresCommand& command);
 void runNprFigures(const FiguresCommand& command);
 void runGumbauFigures(const FiguresCommand& command);
 void runLeafFigures(const FiguresCommand& command);
+void runSkyFigures(const FiguresCommand& command);
+
+/// Figures 5.3 to 5.7 of Habel 2009, with a page that shows them and the errors as JSON; the sun
+/// and the turbidity are those of Figure 5.5.
+struct SkyReport {
+  std::string folder = "figures";
+  int bands = 7;
+  glm::vec3 to_sun{0.0f, 0.70710678f, 0.70710678f};
+  float turbidity = 3.0f;
+  std::optional<FiguresCommand> scenes = {};  ///< draws Figures 5.6 and 5.7; else they are left out
+};
+void writeSkyReport(const SkyReport& report);
 
 struct FidelityCommand {
   std::string output = "fidelity";

@@ -331,7 +331,7 @@ int run(int argc, char** argv) {
   sky_app->add_option("--report", sky.report, "Folder for the fit's errors and pictures");
   sky_app->add_flag("--json", sky.json, "Print JSON, with the harmonics' weights");
 
-  FiguresCommand luft, npr, gumbau, leaf_figures, grass_figures;
+  FiguresCommand luft, npr, gumbau, leaf_figures, grass_figures, sky_figures;
   CLI::App* figures_app = app.add_subcommand("figures", "Reproduce the figures of a paper");
   const auto add_figures = [figures_app](const char* name, const char* help,
                                          FiguresCommand& figures) {
@@ -356,11 +356,8 @@ int run(int argc, char** argv) {
   grass_figures.size = "480x360";
   CLI::App* grass_figures_app =
       add_figures("grass", "Habel 2009, chapter 2: 2.9 to 2.16", grass_figures);
-  SkyReport sky_figures;
-  CLI::App* habel_app = figures_app->add_subcommand("sky", "Habel 2009: 5.3 to 5.7");
-  habel_app->add_option("-o,--output", sky_figures.folder, "Folder to write")
-      ->capture_default_str();
-  addDeviceOptions(*habel_app, sky_figures.scenes.emplace());
+  sky_figures.size = "480x360";
+  CLI::App* sky_figures_app = add_figures("sky", "Habel 2009, chapter 5: 5.3 to 5.7", sky_figures);
 
   FidelityCommand fidelity;
   CLI::App* report_app = app.add_subcommand("report", "Measure what verdure claims");
@@ -463,7 +460,7 @@ int run(int argc, char** argv) {
   if (*gumbau_app) runGumbauFigures(gumbau);
   if (*leaf_figures_app) runLeafFigures(leaf_figures);
   if (*grass_figures_app) runGrassFigures(grass_figures);
-  if (*habel_app) writeSkyReport(sky_figures);
+  if (*sky_figures_app) runSkyFigures(sky_figures);
   if (*fidelity_app) runFidelityReport(fidelity);
   if (*motion_app) runMotionReport(motion_report);
   if (*bench_grass_app) runBenchGrass(bench_grass);

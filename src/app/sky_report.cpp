@@ -118,9 +118,16 @@ Image differencePicture(const HdrImage& a, const HdrImage& b, float step) {
 
 }  // namespace
 
+void runSkyFigures(const FiguresCommand& command) {
+  SkyReport report;
+  report.folder = command.output;
+  report.scenes = command;
+  writeSkyReport(report);
+}
+
 void writeSkyReport(const SkyReport& report) {
   std::optional<Renderer> renderer;
-  if (report.scenes) renderer.emplace(*report.scenes);
+  if (report.scenes) renderer.emplace(report.scenes->device);
   Page page(report.folder, "Skylight models for lighting with spherical harmonics",
             fmt::format("Figures 5.3 to {} of Habel, Real-Time Rendering and Animation of "
                         "Vegetation (2009). The panoramas show all directions, north in the "
@@ -199,7 +206,7 @@ void writeSkyReport(const SkyReport& report) {
                               {"maximal", errors.maximal[static_cast<std::size_t>(n - 1)]},
                               {"mean", errors.mean[static_cast<std::size_t>(n - 1)]}});
   writeFile(page.folder() / "report.json", json.dump(2) + "\n");
-  if (renderer) addSkyScenes(page, progress, *renderer);
+  if (renderer) addSkyScenes(*report.scenes, page, progress, *renderer);
   page.write();
   progress.show("done");
   fmt::print("{}\n", (page.folder() / "index.html").string());

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <glm/gtc/constants.hpp>
+#include <tuple>
 
 #include "verdure/grow.h"
 #include "verdure/transfer.h"
@@ -10,7 +11,6 @@
 namespace verdure::app {
 namespace {
 
-constexpr int kSceneWidth = 480, kSceneHeight = 360;
 constexpr int kRays = 16;  ///< for each vertex and side: enough for pictures of this size
 constexpr float kCamera_deg = 35.0f;
 constexpr float kTurbidities[] = {2.5f, 4.0f, 6.0f};  ///< the range that the thesis lights with
@@ -29,10 +29,11 @@ Daylight daylightAt(const Hour& hour, float turbidity) {
 
 }  // namespace
 
-void addSkyScenes(Page& page, Progress& progress, Renderer& renderer) {
+void addSkyScenes(const FiguresCommand& command, Page& page, Progress& progress,
+                  Renderer& renderer) {
   progress.show("growing");
   GrowOptions options;
-  options.species = "black-oak";
+  options.species = command.species;
   options.seed = 4;
   options.leaf_form = LeafForm::kCard;
   options.texture_size = 256;
@@ -48,13 +49,11 @@ void addSkyScenes(Page& page, Progress& progress, Renderer& renderer) {
   renderer.setScene(scene);
 
   View view;
-  view.width = kSceneWidth;
-  view.height = kSceneHeight;
+  std::tie(view.width, view.height) = parseSize(command.size);
   view.terms = presetTerms("transfer");
   const auto look = [&](float azimuth_deg) {
-    view.camera =
-        automaticCamera(scene, glm::radians(azimuth_deg), glm::radians(4.0f),
-                        static_cast<float>(kSceneWidth) / static_cast<float>(kSceneHeight));
+    view.camera = automaticCamera(scene, glm::radians(azimuth_deg), glm::radians(4.0f),
+                                  static_cast<float>(view.width) / static_cast<float>(view.height));
   };
   const auto draw = [&](const std::string& name, const std::string& caption) {
     progress.show("drawing " + name);

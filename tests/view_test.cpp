@@ -11,6 +11,7 @@
 #include "app/view/fly_camera.h"
 #include "app/view/orbit_camera.h"
 #include "app/view/settings_history.h"
+#include "app/view/shown_scene.h"
 #include "app/view/surface_overlay.h"
 #include "scene/camera.h"
 #include "verdure/grow.h"
@@ -291,6 +292,28 @@ TEST(MotionSettings, LevelsAndBranchesBendByTheirFactors) {
   }
   // What is left alone stays, to the bit.
   EXPECT_EQ(branchAmplitudes(usual, wind, 1.5), branchAmplitudes(plantMotion(plant), wind, 1.5));
+}
+
+TEST(ShownScene, BakingAnewAsItIsChangesNothing) {
+  SceneSettings settings;
+  GrowOptions& tree = settings.plants.emplace_back().grow;
+  tree.set = {{"Levels", "2"}, {"Leaves", "20"}};
+  tree.leaf_form = LeafForm::kCard;
+  tree.texture_size = 32;
+  LoadSceneOptions options;
+  options.any_look = true;
+  const LoadedScene loaded(settings, options);
+  const LoadedPlant& plant = loaded.plants()[0];
+  ASSERT_TRUE(plant.light);
+  const PlantBake bake = bakePlant(plant.plant, &*plant.light, {}, BakeField::kOpticalDepth, false,
+                                   [](const std::string&, double) {});
+  ASSERT_EQ(bake.light.meshes.size(), plant.light->meshes.size());
+  for (std::size_t m = 0; m < bake.light.meshes.size(); ++m) {
+    const MeshLight &now = bake.light.meshes[m], &before = plant.light->meshes[m];
+    EXPECT_EQ(now.ambient, before.ambient) << m;
+    EXPECT_EQ(now.normals, before.normals) << m;
+    EXPECT_EQ(now.visibility, before.visibility) << m;
+  }
 }
 
 /// A value that tests tell from others.

@@ -65,7 +65,8 @@ void FileDialog::draw() {
   ImGui::SetNextItemWidth(-1.0f);
   if (opening_) ImGui::SetKeyboardFocusHere();
   opening_ = false;
-  bool done = ImGui::InputText("##path", &path_, ImGuiInputTextFlags_EnterReturnsTrue);
+  ImGui::InputText("##path", &path_);
+  bool done = false;
   ImGui::BeginChild("##files", {0.0f, -2.2f * ImGui::GetFrameHeightWithSpacing()}, true);
   if (ImGui::Selectable("../")) path_ = (listed_ / "..").lexically_normal().string();
   for (const Entry& entry : entries_) {
@@ -79,7 +80,7 @@ void FileDialog::draw() {
     ImGui::TextColored({1.0f, 0.5f, 0.4f, 1.0f}, "%s", problem_.c_str());
   else
     ImGui::TextDisabled("%s", save_ ? "A file in the place is replaced." : " ");
-  done = dialogButton(save_ ? "Save" : "Open") || done;
+  done = acceptButton(save_ ? "Save" : "Open") || done;
   ImGui::SameLine();
   if (cancelButton()) ImGui::CloseCurrentPopup();
   if (done) {

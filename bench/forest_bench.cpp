@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -82,7 +83,7 @@ int run(int argc, char** argv) {
   for (const char* species : {"quaking-aspen", "japanese-maple"})
     kinds.push_back(makeKind(species));
   // 400 a hectare; the nearest to the middle of the picture's pyramid are those that fill it.
-  const float side = std::sqrt(static_cast<float>(std::max(all, 8 * seen)) * 25.0f);
+  const float side = std::sqrt(static_cast<float>(std::max(all, 8 * seen)) * 30.0f);
   const std::vector<Placement> places = scatterPlants({.kinds = {{0, 0.6f, 1.8f}, {1, 0.4f, 1.5f}},
                                                        .corner = glm::vec2(-0.5f * side),
                                                        .size_m = glm::vec2(side),
@@ -114,39 +115,48 @@ int run(int argc, char** argv) {
   FrameDrawer drawer(device);
   std::printf("%s, %d x %d, %zu trees in view\n", device.name().c_str(), view.width, view.height,
               few.places.size());
-  for (const Forest* forest : {&few, &many}) {
-    Scene scene;
-    scene.forest = forest;
-    const auto start = std::chrono::steady_clock::now();
-    GpuScene on_gpu(device, packScene(scene), drawer.sceneLayouts());
-    const double loading = secondsSince(start);
-    std::printf("%7zu trees: loaded in %.2f s\n", forest->places.size(), loading);
-    drawer.forgetScene();
-    // With and without what trees hide of each other, in turns; the first round warms up.
-    std::vector<FrameTimes> times[2];
-    for (int i = 0; i < 2 * (frames + 1); ++i) {
-      drawer.tryHidden(i % 2 == 1);
-      const Frame frame = drawer.draw(on_gpu, view);
-      if (i > 1) times[i % 2].push_back(frame.times);
-      if (i < 2 * frames) continue;
-      const auto [meshes, impostors] = on_gpu.forest()->counts();
-      const auto middle = [&](auto of) {
-        std::vector<double> values;
-        for (const FrameTimes& t : times[i % 2]) values.push_back(of(t));
-        return median(std::move(values));
-      };
-      std::printf(
-          "  %s: %u meshes and %u impostors drawn; frame %.1f ms (choice and motion %.1f, the "
-          "sun's "
-          "maps %.1f, picture %.1f)\n",
-          i % 2 == 1 ? "all   " : "hiding", meshes, impostors, middle([](const FrameTimes& t) {
-            return t.motion_ms + t.shadow_ms + t.color_ms + t.tone_ms;
-          }),
-          middle([](const FrameTimes& t) { return t.motion_ms; }),
-          middle([](const FrameTimes& t) { return t.shadow_ms; }),
-          middle([](const FrameTimes& t) { return t.color_ms; }));
-      if (forest == &many && argc > 7 && i % 2 == 0) writePng(frame.image, argv[7]);
+  // All in turns, since others may use the machine; the first round warms up.
+  struct Way {
+    std::unique_ptr<GpuScene> scene;
+    bool all;
+    std::vector<FrameTimes> times;
+  };
+  std::vector<Way> ways;
+  for (const Forest* forest : {&few, &many})
+    for (const bool draws_all : {false, true}) {
+      Scene scene;
+      scene.forest = forest;
+      const auto start = std::chrono::steady_clock::now();
+      ways.push_back({std::make_unique<GpuScene>(device, packScene(scene), drawer.sceneLayouts()),
+                      draws_all,
+                      {}});
+      if (!draws_all)
+        std::printf("%zu trees: loaded in %.2f s\n", forest->places.size(), secondsSince(start));
+      ways.back().scene->forest()->tryAll(draws_all);
     }
+  for (int round = 0; round <= frames; ++round)
+    for (Way& way : ways) {
+      drawer.forgetScene();
+      const Frame frame = drawer.draw(*way.scene, view);
+      if (round > 0) way.times.push_back(frame.times);
+      if (argc > 7 && &way == &ways[2]) writePng(frame.image, argv[7]);
+    }
+  for (const Way& way : ways) {
+    const auto middle = [&](auto of) {
+      std::vector<double> values;
+      for (const FrameTimes& t : way.times) values.push_back(of(t));
+      return median(std::move(values));
+    };
+    const auto [meshes, impostors] = way.scene->forest()->counts();
+    std::printf(
+        "%7zu trees%s: %u meshes and %u impostors drawn; frame %.1f ms (choice and motion %.1f, "
+        "the sun's maps %.1f, picture %.1f)\n",
+        way.scene->forest()->places(), way.all ? ", nothing left out" : "", meshes, impostors,
+        middle(
+            [](const FrameTimes& t) { return t.motion_ms + t.shadow_ms + t.color_ms + t.tone_ms; }),
+        middle([](const FrameTimes& t) { return t.motion_ms; }),
+        middle([](const FrameTimes& t) { return t.shadow_ms; }),
+        middle([](const FrameTimes& t) { return t.color_ms; }));
   }
   return 0;
 }

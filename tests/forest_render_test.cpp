@@ -284,10 +284,10 @@ TEST_F(ForestRender, WhatOthersHideIsLeftOut) {
   view.wind = {.speed = 7.0f, .from = 0.4f, .gusts = 0.5f};
   view.seconds = 2.0;
   view.background.reset();
-  drawer_.tryHidden(true);
+  scene.forest()->tryAll(true);
   const Image all = drawer_.draw(scene, view).image;
   const auto [meshes, far] = scene.forest()->counts();
-  drawer_.tryHidden(false);
+  scene.forest()->tryAll(false);
   const Image seen = drawer_.draw(scene, view).image;
   const auto [seen_meshes, seen_far] = scene.forest()->counts();
   EXPECT_EQ(all.rgba, seen.rgba);
@@ -340,10 +340,10 @@ TEST_F(ForestRender, HidingChangesNoPicture) {
                        random.uniform(-30.0f, 30.0f)};
     view.camera.target =
         view.camera.eye + glm::vec3(random.uniform(-1.0f, 1.0f), 0.0f, random.uniform(-1.0f, 1.0f));
-    drawer_.tryHidden(true);
+    scene.forest()->tryAll(true);
     const Image all = drawer_.draw(scene, view).image;
     const auto [meshes, far] = scene.forest()->counts();
-    drawer_.tryHidden(false);
+    scene.forest()->tryAll(false);
     EXPECT_EQ(all.rgba, drawer_.draw(scene, view).image.rgba) << i;
     const auto [seen_meshes, seen_far] = scene.forest()->counts();
     hidden += meshes + far - seen_meshes - seen_far;

@@ -399,9 +399,11 @@ Frame FrameDrawer::draw(GpuScene& scene, const View& view, const gpu::Texture* t
   if (inspection_ != Inspection::kNothing)
     inspect_pass_.prepare(*device_, layout_, scene, view.terms, inspection_);
   if (scene.forest() != nullptr) {
-    scene.forest()->look(view, cascades,
-                         scene.terrain() != nullptr ? &scene.terrain()->terrain() : nullptr,
-                         photo && inspection_ == Inspection::kNothing && !hidden_trial_);
+    scene.forest()->look(
+        view, cascades, scene.terrain() != nullptr ? &scene.terrain()->terrain() : nullptr,
+        std::min(scene.bounds().min.y,
+                 scene.terrain() != nullptr ? scene.terrain()->lowest() : scene.groundHeight()),
+        photo && inspection_ == Inspection::kNothing);
     forest_pass_.prepare(*scene.forest(), targets_->depth);
     impostor_pass_.prepare(view.terms, kind, depth_maps);
     if (view.last) impostor_pass_.prepareVelocity(VelocityPass::kFormat);

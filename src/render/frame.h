@@ -59,8 +59,6 @@ class FrameDrawer {
   /// In tests and measurements alone: the first layer of grass as polygons instead of rays.
   void tryBillboards(const std::optional<BillboardTrial>& trial) { billboard_trial_ = trial; }
   const GrassBillboards& billboards() const { return grass_billboards_; }
-  /// From now on: trees that others hide are drawn as well, or again left out.
-  void tryHidden(bool drawn) { hidden_trial_ = drawn; }
   /// From now on: plants alone, one quantity of them; views should be inspectedView().
   void inspect(Inspection what) { inspection_ = what; }
 
@@ -115,7 +113,6 @@ class FrameDrawer {
   std::optional<gpu::Texture> shadow_maps_, foliage_maps_;  ///< a layer for each cascade
   CascadeTrial cascade_trial_;
   std::optional<BillboardTrial> billboard_trial_;
-  bool hidden_trial_ = false;
   Inspection inspection_ = Inspection::kNothing;
   std::optional<Targets> targets_;
   std::shared_ptr<const Sky> known_sky_;

@@ -32,6 +32,8 @@ constexpr std::uint32_t kDepthTiles[] = {
 constexpr float kShadowRange_m = 400.0f;
 /// By which steps the bounds of what casts shadows follow the eye, m.
 constexpr float kCasterStep_m = 64.0f;
+/// Of a sun that is lower, shadows end before they reach the ground.
+constexpr float kLeastSun = 0.01f;
 constexpr std::uint32_t kDrawWords = 5, kFarWords = 4, kMotionWords = 6;
 constexpr std::uint32_t kSeatBytes = 64;
 
@@ -239,7 +241,7 @@ void GpuForest::setWind(const std::optional<Wind>& wind) {
 }
 
 void GpuForest::look(const View& view, std::span<const Cascade> cascades, const Terrain* terrain,
-                     bool hides) {
+                     float lowest, bool hides) {
   const glm::vec3& eye = view.camera.eye;
   if (terrain != nullptr && horizon_eye_ != eye) {
     const std::vector<float> horizon = terrainHorizon(*terrain, eye);
@@ -248,6 +250,7 @@ void GpuForest::look(const View& view, std::span<const Cascade> cascades, const 
   }
   const float pixels_per_m =
       static_cast<float>(view.height) / (2.0f * std::tan(0.5f * view.camera.vertical_fov));
+  float reach = 0.0f;  // of trees that move
   for (std::size_t k = 0; k < kind_data_.size(); ++k) {
     const PackedForestKind& kind = packed_.kinds[k];
     shared::ForestKindData& data = kind_data_[k];
@@ -255,6 +258,9 @@ void GpuForest::look(const View& view, std::span<const Cascade> cascades, const 
     data.first_class = kind.first_class;
     data.meshes = static_cast<std::uint32_t>(kind.grain_m.size());
     data.has_impostor = kind.impostor.views > 0 ? 1 : 0;
+    if (data.moves != 0)
+      reach = std::max(reach, data.has_impostor != 0 ? data.reach.w * packed_.largest_scale
+                                                     : std::numeric_limits<float>::max());
     shared::ImpostorKind& far = impostor_data_[k];
     far.reach = data.reach;
     far.moves = data.moves != 0 && data.beams > 0 ? 1 : 0;
@@ -287,10 +293,10 @@ void GpuForest::look(const View& view, std::span<const Cascade> cascades, const 
   for (std::uint32_t v = 0; v < kViews; ++v) {
     shared::ForestView& data = view_data_[v];
     data.eye = glm::vec4(eye, meshes);
-    data.farthest = std::numeric_limits<float>::max();
+    data.farthest = v == kMotionView ? reach : std::numeric_limits<float>::max();
     const bool picture = v == kPicture || v == kBehind;
     data.horizon = picture && terrain != nullptr ? 1 : 0;
-    data.hides = v == kBehind && hides ? 1 : 0;
+    data.hides = v == kBehind && hides && !all_ ? 1 : 0;
     data.clip = clip;
     data.width = static_cast<std::uint32_t>(view.width);
     data.height = static_cast<std::uint32_t>(view.height);
@@ -312,6 +318,9 @@ void GpuForest::look(const View& view, std::span<const Cascade> cascades, const 
       }
       data.planes[i] = planeOf(one - rowOf(map, 2));  // nothing behind the map's end casts into it
       data.farthest = casters;
+      const glm::vec3& sun = view.daylight.sun.direction;
+      data.shades = all_ ? 0 : 1;
+      data.shade = glm::vec4(-sun / std::max(sun.y, kLeastSun), std::min(lowest, low_.y));
     }
   }
   std::memcpy(views_.memory.mapped(), view_data_.data(), sizeof(view_data_));

@@ -38,9 +38,12 @@ class GpuForest {
                  std::span<const gpu::Buffer> texels);
 
   /// Of the frame that comes: levels by the camera and the picture's size, places by the views.
-  /// `terrain`: whose hills hide trees, or null. `hides`: so do its meshes.
+  /// `terrain`: whose hills hide trees, or null. `lowest`: what shadows fall on, m. `hides`: so
+  /// do its meshes.
   void look(const View& view, std::span<const Cascade> cascades, const Terrain* terrain,
-            bool hides);
+            float lowest, bool hides);
+  /// In tests alone: from now on what is not seen, or shades nothing that is, is drawn as well.
+  void tryAll(bool all) { all_ = all; }
   bool hides() const { return view_data_[kBehind].hides != 0; }
   /// In this wind or weaker ones; none: at rest.
   void setWind(const std::optional<Wind>& wind);
@@ -62,6 +65,7 @@ class GpuForest {
   bool moves() const { return moves_; }
   /// Trees that the picture shows as meshes and as impostors; after the fence.
   std::pair<std::uint32_t, std::uint32_t> counts() const;
+  std::size_t places() const { return packed_.places.size(); }
   std::size_t bytes() const;  ///< of what grows with the number of trees
 
  private:
@@ -86,7 +90,7 @@ class GpuForest {
   std::optional<glm::vec3> horizon_eye_;  ///< that horizon_ is for
   std::uint32_t view_count_ = 1;          ///< picture and cascades of this frame
   std::optional<Wind> wind_;
-  bool moves_ = false;
+  bool moves_ = false, all_ = false;
   glm::vec3 low_{0.0f}, high_{0.0f};  ///< of all places
   float tallest_m_ = 0.0f;            ///< of any tree, its farthest point from its place
   Bounds largest_;                    ///< of any tree, however it is turned, from its place

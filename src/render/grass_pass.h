@@ -24,6 +24,7 @@ class GpuTerrain {
  public:
   GpuTerrain(const gpu::Device& device, PackedTerrain packed, const gpu::SetLayout& layout);
   const Terrain& terrain() const { return terrain_; }
+  float lowest() const { return range_.x; }  ///< m
 
  private:
   friend class GrassPass;

@@ -69,8 +69,13 @@ struct ForestView {
   uint hides;    ///< 1: what lies behind the farthest depths is left out
   uint width;    ///< of the picture, pixels
   uint height;
+  vec4 shade;   ///< of a map of the sun: where light goes, by its steps of 1 m down; w: how low
+  uint shades;  ///< 1: what throws no shadow into the picture is left out
+  uint padding0;
+  uint padding1;
+  uint padding2;
 };
-SHARED_SIZE(ForestView, 224);
+SHARED_SIZE(ForestView, 256);
 
 /// An impostor is a strip of so many quads, so that it can bend.
 const uint kImpostorRows = 4u;
@@ -199,6 +204,16 @@ SHARED_FUNCTION DepthTiles depthTilesOf(ForestView view, vec3 middle, float half
 /// Tiles along a side of so many pixels: whole blocks.
 SHARED_FUNCTION uint depthTiles(uint pixels) {
   return (pixels + 63u) / 64u * 8u;
+}
+
+/// Whether a sphere's shadow may reach into the picture, whose `planes` are given.
+SHARED_FUNCTION bool shadesPicture(ForestView picture, vec4 shade, vec3 middle, float radius) {
+  vec3 way = vec3(shade) * max(middle.y + radius - shade.w, 0.0f);
+  for (int i = 0; i < 6; ++i) {
+    float here = dot(vec3(picture.planes[i]), middle) + picture.planes[i].w;
+    if (here + max(dot(vec3(picture.planes[i]), way), 0.0f) < -radius) return false;
+  }
+  return true;
 }
 
 /// A direction from the plant's coordinates to the world's, by its turn about +Y.

@@ -253,16 +253,17 @@ same redone kept "what was cancelled"
 drop "second plant.glb"
 xdotool mousemove --window "$window" 280 230 sleep 0.2 click 1  # Discard
 wait_for 30 "dropped plant" is_titled "second plant.glb - verdure"
-xdotool key space
-sleep 0.3
-xdotool key space
+"$program" render plant.glb -o sky.exr --size 16x8 >/dev/null
+drop sky.exr  # a setting, which asks nothing
 wait_for 5 "changed scene" is_titled "second plant.glb * - verdure"
 drop plant.glb
 xdotool key Return  # Save
 window_picture save-as
 xdotool key Return  # as scene.json
 wait_for 30 "plant dropped after saving" is_titled "plant.glb - verdure"
-grep -q '"second plant.glb"' scene.json || fail "the scene that was to be saved is not"
+for name in "second plant.glb" sky.exr; do
+  grep -q "\"$name\"" scene.json || fail "the scene that was to be saved has no $name"
+done
 # Asked to close a second time, it closes.
 xdotool key space
 window_picture changed

@@ -83,12 +83,12 @@ differs() {
 same() { cmp -s "$1.png" "$2.png" || fail "$3: the picture is another"; }
 # With the mouse button $1 from $2 $3 to $4 $5.
 drag() {
-  xdotool mousemove --window "$window" "$2" "$3" sleep 0.1 mousedown "$1"
+  xdotool mousemove --window "$window" "$2" "$3" sleep 0.05 mousedown "$1"
   for i in 1 2 3; do
-    xdotool sleep 0.1 \
+    xdotool sleep 0.05 \
       mousemove --window "$window" $(($2 + ($4 - $2) * i / 3)) $(($3 + ($5 - $3) * i / 3))
   done
-  xdotool sleep 0.1 mouseup "$1"
+  xdotool sleep 0.05 mouseup "$1"
 }
 
 drop() {
@@ -199,7 +199,7 @@ picture back
 same first back "all as at first"
 other=$(xdotool search --maxdepth 0 --name '' 2>/dev/null | head -n 1)
 [ -n "$other" ] && xdotool windowfocus "$other" 2>/dev/null || true
-sleep 0.3
+sleep 0.1
 xdotool windowfocus "$window"
 picture focused
 same back focused "focus lost and found"
@@ -212,7 +212,7 @@ picture baked
 same focused baked "the same bake again"
 wait_for 5 "unchanged scene" is_titled "plant.glb - verdure"
 xdotool key space
-sleep 0.5
+sleep 0.3
 xdotool key space
 picture wind
 differs baked wind "wind"
@@ -245,13 +245,14 @@ window_picture open
 xdotool type "second plant.glb"
 xdotool key Return
 still_there opened
-xdotool key ctrl+q
+xdotool keydown ctrl keydown q keyup ctrl  # Q alone would fly
 still_there closed
+xdotool keyup q
 picture kept
 same redone kept "what was cancelled"
 # Discarded, then saved, by a dialog for its name.
 drop "second plant.glb"
-xdotool mousemove --window "$window" 280 230 sleep 0.2 click 1  # Discard
+xdotool mousemove --window "$window" 280 230 sleep 0.1 click 1  # Discard
 wait_for 30 "dropped plant" is_titled "second plant.glb - verdure"
 "$program" render plant.glb -o sky.exr --size 16x8 >/dev/null
 drop sky.exr  # a setting, which asks nothing

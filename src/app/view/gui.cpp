@@ -169,6 +169,7 @@ void Gui::keys(const WindowInput& input) {
   for (const auto& [key, modifiers] : input.keys) {
     const bool control = (modifiers & GLFW_MOD_CONTROL) != 0;
     const bool shift = (modifiers & GLFW_MOD_SHIFT) != 0;
+    if (control) commands_.insert(key);
     if (key == GLFW_KEY_F12 && shift)
       capture_ = "verdure-window.png";
     else if (key == GLFW_KEY_F12)
@@ -236,10 +237,12 @@ void Gui::moveCamera(double seconds) {
     camera = zoomed(camera, std::pow(kZoomPerNotch, io.MouseWheel), 1e-3f * reach, 100.0f * reach);
   }
   moves_ = false;
+  std::erase_if(commands_, [this](int key) { return !held(*window_, key); });
   if (!io.WantCaptureKeyboard && !io.KeyCtrl) {
-    const auto axis = [this](int forth, int back) {
-      return (held(*window_, forth) ? 1.0f : 0.0f) - (held(*window_, back) ? 1.0f : 0.0f);
+    const auto flies = [this](int key) {
+      return held(*window_, key) && !commands_.contains(key) ? 1.0f : 0.0f;
     };
+    const auto axis = [&flies](int forth, int back) { return flies(forth) - flies(back); };
     const glm::vec3 fly(axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_E, GLFW_KEY_Q),
                         axis(GLFW_KEY_W, GLFW_KEY_S));
     if (fly != glm::vec3(0.0f)) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -84,6 +85,7 @@ class Gui {
   std::string clip_path_ = "clip.mp4";
   int clip_frames_ = 48, clip_fps_ = 24;
   std::vector<int> brief_keys_;  ///< let go already when they were fed
+  std::set<int> commands_;       ///< keys that went down with Ctrl, which may be let go before them
   bool drags_ = false;           ///< a mouse button went down over the picture
   std::filesystem::path capture_;
   std::string title_;

@@ -402,8 +402,7 @@ TEST_F(CommandLineRender, ReportOfMotion) {
 }
 
 TEST_F(CommandLineRender, FiguresOfTheSky) {
-  runWell(
-      {"figures", "sky", "--species", "scots-pine", "--size", "96x72", "-o", path("sky")});
+  runWell({"figures", "sky", "--species", "scots-pine", "--size", "96x72", "-o", path("sky")});
   const std::string page = textOf(path("sky/index.html"));
   std::vector<Image> pictures;
   for (const std::string name :

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <glm/gtc/constants.hpp>
 #include <memory>
 
@@ -123,6 +124,18 @@ inline View quadView() {
   setFurnace(view, {0.1f, 0.2f, 0.3f});
   view.background = glm::vec3(0.0f);
   return view;
+}
+
+/// How many pixels differ by more than `levels` of 255.
+inline int differing(const Image& a, const Image& b, int levels) {
+  int count = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); i += 4) {
+    int most = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+      most = std::max(most, std::abs(int{a.rgba[i + c]} - int{b.rgba[i + c]}));
+    count += most > levels ? 1 : 0;
+  }
+  return count;
 }
 
 /// Direction through the centre of a pixel.

@@ -70,18 +70,6 @@ class WindRender : public testing::Test {
   Renderer renderer_;
 };
 
-/// How many pixels differ by more than `levels` of 255.
-int differing(const Image& a, const Image& b, int levels) {
-  int count = 0;
-  for (std::size_t i = 0; i < a.rgba.size(); i += 4) {
-    int most = 0;
-    for (std::size_t c = 0; c < 3; ++c)
-      most = std::max(most, std::abs(int{a.rgba[i + c]} - int{b.rgba[i + c]}));
-    count += most > levels ? 1 : 0;
-  }
-  return count;
-}
-
 TEST_F(WindRender, WithoutWindIsThePictureAtRestToTheBit) {
   View still = view();
   Scene rest = movingScene();

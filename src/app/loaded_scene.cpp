@@ -179,12 +179,13 @@ void LoadedScene::addVisibility(const LoadedPlant& plant, std::optional<CrownLig
   if (!light || !(wanted || options_.any_look)) return;
   // Leaves alone have it; what has none is drawn by its bake.
   if (options_.any_look && plant.plant.leaves.empty()) return;
-  const std::vector<MeshLight> baked = light->meshes;
+  std::vector<std::vector<float>> baked;
+  if (options_.any_look)
+    for (const MeshLight& mesh : light->meshes) baked.push_back(mesh.ambient);
   bake_seconds_ += addLeafVisibility(plant.plant, *light,
                                      [this](double share) { show("leaf visibility", share); });
-  if (!options_.any_look) return;
   // It is beside the bake, whose coefficients other looks show.
-  for (std::size_t m = 0; m < baked.size(); ++m) light->meshes[m].ambient = baked[m].ambient;
+  for (std::size_t m = 0; m < baked.size(); ++m) light->meshes[m].ambient = std::move(baked[m]);
 }
 
 void LoadedScene::makeGround() {

@@ -32,6 +32,8 @@ constexpr std::uint32_t kDepthTiles[] = {
 constexpr float kShadowRange_m = 400.0f;
 /// By which steps the bounds of what casts shadows follow the eye, m.
 constexpr float kCasterStep_m = 64.0f;
+/// No filter of shadows is wider, texels: kWidestShadow of sun_visibility.glsl.
+constexpr float kFilterTexels = 24.0f;
 /// Of a sun that is lower, shadows end before they reach the ground.
 constexpr float kLeastSun = 0.01f;
 constexpr std::uint32_t kDrawWords = 5, kFarWords = 4, kMotionWords = 6;
@@ -320,6 +322,7 @@ void GpuForest::look(const View& view, std::span<const Cascade> cascades, const 
       data.farthest = casters;
       const glm::vec3& sun = view.daylight.sun.direction;
       data.shades = all_ ? 0 : 1;
+      data.blur = kFilterTexels * cascades[v - 1].texel_m;
       data.shade = glm::vec4(-sun / std::max(sun.y, kLeastSun), std::min(lowest, low_.y));
     }
   }

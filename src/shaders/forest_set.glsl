@@ -57,7 +57,7 @@ bool isBehind(ForestView view, vec3 middle, float half_height, float half_width)
 bool seesCluster(ForestView view) {
   vec4 sphere = clusters[gl_WorkGroupID.x];
   return seesSphere(view, sphere.xyz, sphere.w) &&
-         (view.shades == 0u || shadesPicture(views[0], view.shade, sphere.xyz, sphere.w)) &&
+         (view.shades == 0u || shadesPicture(view, views[0], sphere.xyz, sphere.w)) &&
          (view.hides == 0u || !isBehind(view, sphere.xyz, sphere.w, sphere.w));
 }
 
@@ -79,7 +79,7 @@ Chosen chosenIn(ForestView view, uint index) {
   ForestKindData kind = kinds[place.kind];
   vec3 middle = forestMiddle(place, kind.sphere);
   if (!seesSphere(view, middle, kind.sphere.w * place.scale)) return chosen;
-  if (view.shades != 0u && !shadesPicture(views[0], view.shade, middle, kind.sphere.w * place.scale))
+  if (view.shades != 0u && !shadesPicture(view, views[0], middle, kind.sphere.w * place.scale))
     return chosen;
   if (view.horizon != 0u && isHidden(middle - view.eye.xyz, kind.sphere.w * place.scale))
     return chosen;

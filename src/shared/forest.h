@@ -71,7 +71,7 @@ struct ForestView {
   uint height;
   vec4 shade;   ///< of a map of the sun: where light goes, by its steps of 1 m down; w: how low
   uint shades;  ///< 1: what throws no shadow into the picture is left out
-  uint padding0;
+  float blur;   ///< as wide as the map\'s filter, m
   uint padding1;
   uint padding2;
 };
@@ -206,12 +206,13 @@ SHARED_FUNCTION uint depthTiles(uint pixels) {
   return (pixels + 63u) / 64u * 8u;
 }
 
-/// Whether a sphere's shadow may reach into the picture, whose `planes` are given.
-SHARED_FUNCTION bool shadesPicture(ForestView picture, vec4 shade, vec3 middle, float radius) {
-  vec3 way = vec3(shade) * max(middle.y + radius - shade.w, 0.0f);
+/// Whether a sphere's shadow, in a map of the sun, may reach into the picture.
+SHARED_FUNCTION bool shadesPicture(ForestView map, ForestView picture, vec3 middle, float radius) {
+  vec3 way = vec3(map.shade) * max(middle.y + radius - map.shade.w, 0.0f);
+  float wide = radius + map.blur + 0.01f * length(way);  // half-shadows of the sun's disc
   for (int i = 0; i < 6; ++i) {
     float here = dot(vec3(picture.planes[i]), middle) + picture.planes[i].w;
-    if (here + max(dot(vec3(picture.planes[i]), way), 0.0f) < -radius) return false;
+    if (here + max(dot(vec3(picture.planes[i]), way), 0.0f) < -wide) return false;
   }
   return true;
 }

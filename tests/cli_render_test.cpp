@@ -294,6 +294,8 @@ TEST_F(CommandLineRender, Refuses) {
                 {"out.exr: a drawn style has no light to write; use .png"});
   expectRefused({"figures", "npr", "--size", "0x5", "-o", path("figures")}, {"--size"});
   expectRefused({"figures", "npr", "--species", "triffid", "-o", path("figures")}, {"triffid"});
+  expectRefused({"figures", "sky", "--size", "0x5", "-o", path("figures")}, {"--size"});
+  expectRefused({"figures", "sky", "--species", "triffid", "-o", path("figures")}, {"triffid"});
   expectRefused({"figures", "gumbau", "--size", "0x5", "-o", path("figures")}, {"--size"});
   expectRefused({"figures", "gumbau", "--species", "triffid", "-o", path("figures")}, {"triffid"});
 }

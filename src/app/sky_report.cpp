@@ -12,6 +12,7 @@
 #include "base/files.h"
 #include "base/progress.h"
 #include "verdure/error.h"
+#include "verdure/grow.h"
 #include "verdure/sky_fit.h"
 
 namespace verdure::app {
@@ -119,6 +120,8 @@ Image differencePicture(const HdrImage& a, const HdrImage& b, float step) {
 }  // namespace
 
 void runSkyFigures(const FiguresCommand& command) {
+  speciesParameters(command.species);  // both throw before anything is written
+  parseSize(command.size);
   SkyReport report;
   report.folder = command.output;
   report.scenes = command;

@@ -128,9 +128,8 @@ int run(int argc, char** argv) {
       Scene scene;
       scene.forest = forest;
       const auto start = std::chrono::steady_clock::now();
-      ways.push_back({std::make_unique<GpuScene>(device, packScene(scene), drawer.sceneLayouts()),
-                      draws_all,
-                      {}});
+      ways.push_back(
+          {std::make_unique<GpuScene>(device, packScene(scene), drawer.sceneLayouts()), draws_all});
       if (!draws_all)
         std::printf("%zu trees: loaded in %.2f s\n", forest->places.size(), secondsSince(start));
       ways.back().scene->forest()->tryAll(draws_all);

@@ -15,6 +15,7 @@ constexpr std::uint32_t kUp[] = {
 constexpr vk::Format kFormat = vk::Format::eR16G16B16A16Sfloat;
 constexpr std::size_t kMostLevels = 7;  // the widest spreads over some 2^8 pixels
 constexpr std::uint32_t kSmallest = 6;  // pixels across the coarsest level, about
+
 gpu::Texture makeLevel(const gpu::Device& device, std::uint32_t width, std::uint32_t height) {
   using Usage = vk::ImageUsageFlagBits;
   return gpu::makeTexture(device, {.format = kFormat,

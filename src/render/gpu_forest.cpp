@@ -9,6 +9,7 @@
 #include "motion/motion_texture.h"
 #include "scene/camera.h"
 #include "scene/terrain_horizon.h"
+#include "shared/frame.h"
 #include "shared/horizon.h"
 #include "verdure/error.h"
 
@@ -32,8 +33,6 @@ constexpr std::uint32_t kDepthTiles[] = {
 constexpr float kShadowRange_m = 400.0f;
 /// By which steps the bounds of what casts shadows follow the eye, m.
 constexpr float kCasterStep_m = 64.0f;
-/// No filter of shadows is wider, texels: kWidestShadow of sun_visibility.glsl.
-constexpr float kFilterTexels = 24.0f;
 /// Of a sun that is lower, shadows end before they reach the ground.
 constexpr float kLeastSun = 0.01f;
 constexpr std::uint32_t kDrawWords = 5, kFarWords = 4, kMotionWords = 6;
@@ -322,7 +321,7 @@ void GpuForest::look(const View& view, std::span<const Cascade> cascades, const 
       data.farthest = casters;
       const glm::vec3& sun = view.daylight.sun.direction;
       data.shades = all_ ? 0 : 1;
-      data.blur = kFilterTexels * cascades[v - 1].texel_m;
+      data.blur = shared::kWidestShadow * cascades[v - 1].texel_m;
       data.shade = glm::vec4(-sun / std::max(sun.y, kLeastSun), std::min(lowest, low_.y));
     }
   }
@@ -489,8 +488,7 @@ void ForestPass::record(const vk::raii::CommandBuffer& commands, const GpuForest
   begin(commands, forest);
   if (forest.moves()) {  // first: what is drawn reads where its motion is
     choose(commands, forest, GpuForest::kMotionView, 1);
-    for (const gpu::Buffer* buffer : {&forest.slots_, &forest.ranges_})
-      gpu::bufferBarrier(commands, *buffer->buffer, Use::kComputeStorage, Use::kComputeStorage);
+    gpu::bufferBarrier(commands, *forest.slots_.buffer, Use::kComputeStorage, Use::kComputeStorage);
   }
   choose(commands, forest, 0, forest.view_count_);
   if (!forest.hides()) choose(commands, forest, GpuForest::kBehind, 1);

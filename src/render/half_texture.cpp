@@ -7,6 +7,7 @@ namespace verdure {
 namespace {
 
 constexpr float kLargest = 65000.0f;
+
 }  // namespace
 
 HalfTexture::HalfTexture(const gpu::Device& device, std::uint32_t width, std::uint32_t height)

@@ -11,6 +11,7 @@ namespace verdure {
 namespace {
 
 using Usage = vk::ImageUsageFlagBits;
+
 gpu::Texture makeTarget(const gpu::Device& device, std::uint32_t width, std::uint32_t height,
                         vk::Format format, vk::SampleCountFlagBits samples,
                         vk::ImageUsageFlags usage) {

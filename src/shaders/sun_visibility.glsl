@@ -17,9 +17,6 @@ const float kPoissonRadius = 1.7;
 /// Towards the border of a map the disk grows, by this factor at most, to meet that of the next.
 const float kWidestPoisson = 2.0;
 
-/// Half-shadows are at most this wide, texels: few taps further apart would be seen one by one.
-const float kWidestShadow = 24.0;
-
 /// Where a cascade's maps are read for a point: `at`, the point moved off its surface, depth not
 /// beyond the farthest in the map; `z`, the same without that end; `turn`: the disk of taps' radius
 /// and angle.

@@ -11,6 +11,9 @@
 
 SHARED_BEGIN
 
+/// Half-shadows are at most this wide, texels: few taps further apart would be seen one by one.
+const float kWidestShadow = 24.0f;
+
 struct FrameUniforms {
   mat4 clip_from_world;
   mat4 shadow_from_world[kMostCascades];  ///< x, y in [0, 1] over each layer, z = its depth
